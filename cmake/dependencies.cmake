@@ -1,0 +1,16 @@
+# System packages (Debian names in tools/install_dependencies.sh).
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(TBB 2021 REQUIRED CONFIG)
+find_package(fmt 9 REQUIRED)
+find_package(PNG REQUIRED)
+find_package(liblzf CONFIG REQUIRED)
+
+if(SHAPELIGHT_BUILD_APPS)
+  find_package(CLI11 2.1 REQUIRED)
+endif()
+if(SHAPELIGHT_BUILD_APPS OR SHAPELIGHT_BUILD_TESTS)
+  find_package(nlohmann_json 3.11 REQUIRED)
+endif()
+if(SHAPELIGHT_BUILD_TESTS)
+  find_package(GTest 1.12 REQUIRED)
+endif()

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "shapelight/core/run_context.hpp"
+#include "shapelight/core/types.hpp"
+
+namespace shapelight {
+
+/// A point found by a query.
+struct Neighbor {
+  double distance_sq = 0.0;  ///< [input length unit squared]
+  Index index = kNoIndex;    ///< into the points that the tree was built from
+  friend bool operator<(const Neighbor& a, const Neighbor& b) {
+    return a.distance_sq < b.distance_sq || (a.distance_sq == b.distance_sq && a.index < b.index);
+  }
+};
+
+/// Static kd-tree over points; exact queries in double precision.
+/// Pre: points finite. Queries are const and safe from any number of threads. Answers are sorted by (distance, index),
+/// so ties do not depend on the shape of the tree. Keeps its own copy of the points: 28 bytes per point and nodes.
+class KdTree {
+ public:
+  explicit KdTree(std::span<const Vec3> points);
+
+  [[nodiscard]] std::size_t size() const { return index_.size(); }
+  /// The nearest point; index kNoIndex in an empty tree.
+  [[nodiscard]] Neighbor nearest(const Vec3& query) const;
+  /// The min(k, size()) nearest points into `found`, ascending; a point at the query's own place counts.
+  void nearest(const Vec3& query, std::size_t k, std::vector<Neighbor>& found) const;
+  /// All points with distance <= radius, ascending.
+  void within(const Vec3& query, double radius, std::vector<Neighbor>& found) const;
+
+ private:
+  struct Node {
+    Vec3 min, max;             // box of the points below
+    std::uint32_t begin, end;  // slots
+    std::uint32_t right;       // index of the right child, 0 in a leaf; the left child follows its parent
+  };
+  std::uint32_t build(std::uint32_t begin, std::uint32_t end, std::span<const Vec3> points);
+
+  std::vector<Node> nodes_;
+  std::vector<double> x_, y_, z_;  // coordinates in slot order
+  std::vector<Index> index_;       // slot -> input index
+};
+
+}  // namespace shapelight

@@ -1,0 +1,39 @@
+#include "core/parallel.hpp"
+
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
+
+#include <atomic>
+
+namespace shapelight::parallel {
+
+void run_chunks(const RunContext& context, std::size_t num_chunks, const std::function<void(std::size_t)>& body) {
+  context.check();
+  if (num_chunks <= 1 || context.max_threads == 1) {
+    for (std::size_t i = 0; i < num_chunks; ++i) {
+      context.check();
+      body(i);
+    }
+    return;
+  }
+  std::atomic<bool> stopped{false};
+  tbb::task_arena arena(context.max_threads > 0 ? context.max_threads : tbb::task_arena::automatic);
+  arena.execute([&] {
+    tbb::parallel_for(
+        tbb::blocked_range<std::size_t>(0, num_chunks, 1),
+        [&](const tbb::blocked_range<std::size_t>& range) {
+          for (std::size_t i = range.begin(); i < range.end(); ++i) {
+            if (stopped.load(std::memory_order_relaxed)) return;
+            if (context.stop.stop_requested()) {
+              stopped.store(true, std::memory_order_relaxed);
+              return;
+            }
+            body(i);
+          }
+        },
+        tbb::simple_partitioner());
+  });
+  context.check();
+}
+
+}  // namespace shapelight::parallel

@@ -1,0 +1,74 @@
+#include "shapelight/graph/surface_graph.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <stdexcept>
+
+namespace shapelight {
+namespace {
+
+void require(bool holds, const char* what, std::size_t vertex) {
+  if (!holds) throw std::logic_error(fmt::format("surface graph: vertex {}: {}", vertex, what));
+}
+
+void validate_vertex(const SurfaceGraph& graph, std::size_t i) {
+  require(graph.position[i].allFinite(), "position is not finite", i);
+  const double normal_length = graph.normal[i].norm();
+  require(normal_length == 0.0 || std::abs(normal_length - 1.0) < 1e-6, "normal is neither unit nor zero", i);
+  require(graph.area[i] >= 0.0 && std::isfinite(graph.area[i]), "area is negative or not finite", i);
+  const auto neighbors = graph.neighbors_of(i);
+  for (std::size_t k = 0; k < neighbors.size(); ++k) {
+    const Index j = neighbors[k];
+    require(j < graph.size(), "neighbour out of range", i);
+    require(j != i, "is its own neighbour", i);
+    require(k == 0 || neighbors[k - 1] < j, "neighbours are not ascending and unique", i);
+    const auto back = graph.neighbors_of(j);
+    require(std::binary_search(back.begin(), back.end(), static_cast<Index>(i)), "an edge is one-way", i);
+  }
+  require(graph.vertex_of_point[graph.global_id[i]] == i, "index maps disagree", i);
+}
+
+}  // namespace
+
+void validate(const SurfaceGraph& graph) {
+  const std::size_t n = graph.size();
+  const bool sizes = graph.offsets.size() == n + 1 && graph.normal.size() == n && graph.area.size() == n &&
+                     graph.boundary.size() == n && graph.outlier.size() == n && graph.global_id.size() == n &&
+                     graph.weight.size() == graph.neighbors.size();
+  require(sizes, "arrays differ in size", 0);
+  require(graph.offsets.front() == 0 && graph.offsets.back() == graph.neighbors.size(), "offsets do not span", 0);
+  for (std::size_t i = 0; i < n; ++i) validate_vertex(graph, i);
+}
+
+std::span<const Index> RingCollector::collect(Index center, int rings, std::size_t limit) {
+  found_.clear();
+  slots_.assign(std::bit_ceil(std::max<std::size_t>(64, 4 * limit)), kNoIndex);
+  insert(center);
+  std::size_t ring_begin = 0;
+  for (int ring = 0; ring < rings && found_.size() < limit; ++ring) {
+    const std::size_t ring_end = found_.size();
+    for (std::size_t k = ring_begin; k < ring_end; ++k) {
+      for (const Index j : graph_->neighbors_of(found_[k])) {
+        if (insert(j) && found_.size() == limit) return found_;
+      }
+    }
+    ring_begin = ring_end;
+  }
+  return found_;
+}
+
+bool RingCollector::insert(Index vertex) {
+  const std::size_t mask = slots_.size() - 1;
+  std::size_t slot = (vertex * 0x9e3779b1U) & mask;
+  while (slots_[slot] != kNoIndex) {
+    if (slots_[slot] == vertex) return false;
+    slot = (slot + 1) & mask;
+  }
+  slots_[slot] = vertex;
+  found_.push_back(vertex);
+  return true;
+}
+
+}  // namespace shapelight
