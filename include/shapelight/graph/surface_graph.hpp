@@ -18,7 +18,7 @@ namespace shapelight {
 struct SurfaceGraph {
   std::vector<std::uint32_t> offsets;     ///< n + 1
   std::vector<Index> neighbors;           ///< m
-  std::vector<float> weight;              ///< m: [area] surface that the edge stands for; sums to about 3 area per vertex
+  std::vector<float> weight;              ///< m: [area] of the triangles at the edge; sums to 6 x area over a vertex's edges
   std::vector<Vec3> position;             ///< n: relative to `origin`, [input length unit]
   std::vector<Vec3> normal;               ///< n: unit, consistently oriented; zero where undefined
   std::vector<double> area;               ///< n: [input length unit squared] surface that the vertex stands for
