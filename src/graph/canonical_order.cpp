@@ -75,6 +75,10 @@ void sort_ties(std::vector<Keyed>& keys, std::span<const Vec3> positions) {
 
 }  // namespace
 
+BuiltGraph graph_of_places(std::span<const Vec3> positions, const RunContext& context) {
+  return start_graph(positions, context);
+}
+
 BuiltGraph start_graph(std::span<const Vec3> positions, const RunContext& context) {
   BuiltGraph built;
   SurfaceGraph& graph = built.graph;

@@ -54,6 +54,9 @@ struct BuiltGraph {
 [[nodiscard]] BuiltGraph graph_from_points(std::span<const Vec3> positions, const std::optional<Vec3>& viewpoint,
                                            const GraphOptions& options = {}, const RunContext& context = {});
 
+/// Vertices without edges, normals or areas, and none flagged: for methods that look at positions only. Cost: O(n).
+[[nodiscard]] BuiltGraph graph_of_places(std::span<const Vec3> positions, const RunContext& context = {});
+
 /// The builder that fits geometry.kind().
 [[nodiscard]] BuiltGraph build_graph(const Geometry& geometry, const GraphOptions& options = {},
                                      const RunContext& context = {});
