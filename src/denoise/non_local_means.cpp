@@ -8,6 +8,7 @@
 #include "core/statistics.hpp"
 #include "denoise/patch.hpp"
 #include "graph/field_checks.hpp"
+#include "graph/ring_chunk.hpp"
 
 namespace shapelight {
 namespace {
@@ -72,7 +73,7 @@ std::vector<double> non_local_means(const SurfaceGraph& graph, std::span<const d
           rings.collect(static_cast<Index>(i), options.window_rings, static_cast<std::size_t>(options.max_candidates) + 1);
       result[i] = filtered_value(field, nets, candidates, bandwidth_sq);
     }
-  });
+  }, ring_chunk(graph));
   return result;
 }
 

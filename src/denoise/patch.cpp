@@ -4,6 +4,7 @@
 
 #include "core/parallel.hpp"
 #include "core/tangent_frame.hpp"
+#include "graph/ring_chunk.hpp"
 
 namespace shapelight {
 namespace {
@@ -84,7 +85,7 @@ PatchNets build_patch_nets(const SurfaceGraph& graph, std::span<const double> fi
       for (std::size_t m = 0; m < 16; ++m) mean += nets.net[i].value[m] * roots[static_cast<int>(m / 4)] * roots[static_cast<int>(m % 4)];
       nets.mean[i] = mean;
     }
-  });
+  }, ring_chunk(graph));
   return nets;
 }
 

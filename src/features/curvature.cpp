@@ -6,6 +6,7 @@
 #include "core/parallel.hpp"
 #include "core/tangent_frame.hpp"
 #include "features/local_fit.hpp"
+#include "graph/ring_chunk.hpp"
 
 namespace shapelight {
 namespace {
@@ -53,7 +54,7 @@ std::vector<TangentTensor> initial_tensors(const SurfaceGraph& graph, const Curv
                        ? shape_operator(fit_quadric(graph, center, frame, others, FitWeight::Gaussian))
                        : fit_normal_field(graph, center, frame, others);
     }
-  });
+  }, ring_chunk(graph));
   return tensors;
 }
 

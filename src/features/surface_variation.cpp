@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/parallel.hpp"
+#include "shapelight/spatial/kd_tree.hpp"
 
 namespace shapelight {
 namespace {
@@ -59,14 +60,10 @@ double variation_of(const Moments& m) {
   return std::clamp(smallest_eigenvalue(trace, minors, determinant) / trace, 0.0, 1.0 / 3.0);
 }
 
-}  // namespace
-
-std::vector<double> compute_surface_variation(const SurfaceGraph& graph, const SurfaceVariationOptions& options,
-                                              const RunContext& context) {
-  validate_options(options);
+std::vector<double> variation_by_diffusion(const SurfaceGraph& graph, int neighbors, const RunContext& context) {
   const auto n = static_cast<double>(std::max<std::size_t>(1, graph.size()));
   const double ring = static_cast<double>(graph.neighbors.size()) / n + 1.0;
-  const int passes = std::max(1, static_cast<int>(std::lround(options.neighbors / ring)));
+  const int passes = std::max(1, static_cast<int>(std::lround(neighbors / ring)));
 
   std::vector<Moments> moments = averaged(graph, [&](std::size_t i) { return moments_of(graph.position[i]); }, context);
   for (int pass = 1; pass < passes; ++pass) {
@@ -77,6 +74,31 @@ std::vector<double> compute_surface_variation(const SurfaceGraph& graph, const S
     for (std::size_t i = begin; i < end; ++i) variation[i] = variation_of(moments[i]);
   });
   return variation;
+}
+
+std::vector<double> variation_of_nearest(const SurfaceGraph& graph, int neighbors, const RunContext& context) {
+  const KdTree tree(graph.position);
+  std::vector<double> variation(graph.size());
+  parallel::for_chunks(context, graph.size(), [&](std::size_t begin, std::size_t end) {
+    std::vector<Neighbor> near;
+    for (std::size_t i = begin; i < end; ++i) {
+      if (graph.neighbors_of(i).empty()) continue;
+      tree.nearest(graph.position[i], static_cast<std::size_t>(neighbors), near);
+      Moments sum = Moments::Zero();
+      for (const Neighbor& p : near) sum += moments_of(graph.position[p.index] - graph.position[i]);
+      variation[i] = variation_of(sum / static_cast<double>(near.size()));
+    }
+  });
+  return variation;
+}
+
+}  // namespace
+
+std::vector<double> compute_surface_variation(const SurfaceGraph& graph, const SurfaceVariationOptions& options,
+                                              const RunContext& context) {
+  validate_options(options);
+  return options.method == SurfaceVariationMethod::Nearest ? variation_of_nearest(graph, options.neighbors, context)
+                                                           : variation_by_diffusion(graph, options.neighbors, context);
 }
 
 }  // namespace shapelight

@@ -6,6 +6,7 @@
 #include "core/exponential.hpp"
 #include "core/parallel.hpp"
 #include "graph/field_checks.hpp"
+#include "graph/ring_chunk.hpp"
 
 namespace shapelight {
 namespace {
@@ -72,7 +73,7 @@ void bilateral_pass(const SurfaceGraph& graph, const RetinexOptions& options, st
     for (std::size_t i = begin; i < end; ++i) {
       illumination[i] += mean(sites, rings.collect(static_cast<Index>(i), options.rings, limit));
     }
-  });
+  }, ring_chunk(graph));
 }
 
 }  // namespace
