@@ -47,8 +47,7 @@ inline void add_grid_faces(Shape& shape, Index columns, Index rows, bool wrap_co
   }
 }
 
-/// z = (a x^2 + b y^2) / 2 over a square grid of equilateral-like triangles, normals up; `jitter` in grid steps.
-/// Curvatures are those at the middle only to first order, exact everywhere in closed form below.
+/// z = (a x^2 + b y^2) / 2 over a square patch of nearly equilateral triangles, normals up; `jitter` in grid steps.
 inline Shape height_field(std::string name, Index side, double step, double a, double b, double jitter = 0.0) {
   Shape shape;
   shape.name = std::move(name);
@@ -138,8 +137,7 @@ inline Shape cylinder(Index around, Index along, double radius) {
     for (Index c = 0; c < around; ++c) {
       // Every row is turned by half a step, so the triangles are equilateral up to the bend.
       const Index p = r * around + c, q = r * around + (c + 1) % around;
-      const Index u = p + around, v = q + around, w = (r + 1) * around + (c + around - 1) % around;
-      (void)v;
+      const Index u = p + around, w = (r + 1) * around + (c + around - 1) % around;
       shape.triangles.push_back({p, q, u});
       shape.triangles.push_back({p, u, w});
     }
