@@ -4,6 +4,8 @@
 
 #include <Eigen/Geometry>
 
+#include <cmath>
+
 #include "support/determinism.hpp"
 #include "support/graphs.hpp"
 
@@ -57,7 +59,14 @@ TEST(Noise, StraysDoNotCount) {
 TEST(Noise, TooFewVerticesGiveZero) {
   EXPECT_EQ(estimate_noise(isolated(0)), 0.0);
   EXPECT_EQ(estimate_noise(isolated(5)), 0.0);
-  EXPECT_EQ(estimate_noise(graph_of_edges({{0, 0, 0}, {1, 0, 0}, {0, 1, 5}}, {{0, 1}, {1, 2}, {0, 2}})), 0.0);
+  // A bump amid seven vertices: only one more point than the quadric has freedoms.
+  std::vector<Vec3> fan = {{0, 0, 0.5}};
+  std::set<std::pair<Index, Index>> spokes;
+  for (Index i = 1; i < 8; ++i) {
+    fan.emplace_back(std::cos(0.9 * i), std::sin(0.9 * i), 0.1 * (i % 3));
+    spokes.emplace(0, i);
+  }
+  EXPECT_EQ(estimate_noise(graph_of_edges(fan, spokes)), 0.0);
 }
 
 TEST(Noise, DoesNotDependOnThreads) {
