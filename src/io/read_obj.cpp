@@ -165,8 +165,8 @@ class ObjReader {
     const std::int64_t number = scanner_.need_integer(token, fmt::format("a {} index", element.name));
     const bool in_range = number > 0 ? number <= static_cast<std::int64_t>(kMaxPoints) : -number <= count;
     if (number == 0 || !in_range) {
-      scanner_.fail(fmt::format("face has {} index {}, expected 1 .. or, counted from the last, -1 .. -{}", element.name,
-                                number, count));
+      scanner_.fail(fmt::format("face has {} index {}, expected 1 or more, or down to -{} counted from the last",
+                                element.name, number, count));
     }
     const std::int64_t index = number > 0 ? number - 1 : count + number;
     if (index >= count && index > element.highest) {

@@ -128,7 +128,8 @@ class OffReader {
         geometry_.attributes.set({std::string(kColors[k]), std::vector<float>(colors_[k].begin(), colors_[k].end())});
       }
     } else {
-      set_colors(geometry_.attributes, std::span(kColors).first(colors_.size()), std::move(colors_));
+      const std::size_t channels = colors_.size();
+      set_colors(geometry_.attributes, std::span(kColors).first(channels), std::move(colors_));
     }
     if (!has_texcoords_) return;
     geometry_.attributes.set(float_column("s", std::move(texcoords_[0])));
