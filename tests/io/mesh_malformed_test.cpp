@@ -101,7 +101,7 @@ TEST(MeshMalformed, DamagedFilesEndInAnErrorOrAReadableGeometry) {
   options.intrinsics = CameraIntrinsics{1, 1, 0, 0};
   std::size_t read = 0, refused = 0;
   for (const auto& [reader, bytes] : seeds()) {
-    for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    for (std::uint64_t seed = 0; seed < 150; ++seed) {
       const std::filesystem::path path = folder.write("input", damaged(bytes, seed));
       try {
         const Geometry geometry = read_path(reader, path, options);
