@@ -13,7 +13,7 @@ namespace shapelight {
 
 /// Parameters of sample_voxel().
 struct VoxelSamplingOptions {
-  double fill_share = 0.12;  ///< [1] share of an exact count that closes the largest gaps instead of filling a voxel
+  double fill_share = 0.15;  ///< [1] share of an exact count that closes the largest gaps instead of filling a voxel
 
   template <class Self, class Visitor>
   static void describe(Self& o, Visitor&& visit) {
