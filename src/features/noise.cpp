@@ -11,7 +11,7 @@ namespace shapelight {
 namespace {
 
 constexpr std::size_t kMostProbes = 16384;
-constexpr std::size_t kFitPoints = 20;
+constexpr std::size_t kFitPoints = 12;
 constexpr std::size_t kFewestPoints = 8;        // beside the vertex: three more than the quadric has freedoms
 constexpr double kMedianOfNormal = 0.67448976;  // median of |x| for a standard normal x
 constexpr double kMostLeverage = 0.95;          // beyond this the quadric passes through the vertex anyway

@@ -51,20 +51,19 @@ struct GraphDiagnostics {
 /// Checks every invariant of the graph; throws std::logic_error that names the first broken one. For tests.
 void validate(const SurfaceGraph& graph);
 
-/// Rings around a vertex by breadth-first search. One instance per chunk of work; buffers are reused between calls.
+/// Rings around a vertex by breadth-first search. One instance per chunk of work, which should hold graph.size() / 256
+/// vertices or more; buffers are reused between calls. Holds one byte per vertex of the graph.
 class RingCollector {
  public:
-  explicit RingCollector(const SurfaceGraph& graph) : graph_(&graph) {}
+  explicit RingCollector(const SurfaceGraph& graph) : graph_(&graph), met_(graph.size(), 0) {}
   /// Vertices within `rings` steps of `center`, itself first, then ring by ring, each ring in the order of discovery
   /// (neighbours ascending); at most `limit` in all. The span is valid until the next call. Cost: their degrees.
   std::span<const Index> collect(Index center, int rings, std::size_t limit);
 
  private:
-  bool insert(Index vertex);  // false when already met in this call
-
   const SurfaceGraph* graph_;
   std::vector<Index> found_;
-  std::vector<Index> slots_;  // open addressing, kNoIndex when free
+  std::vector<std::uint8_t> met_;  // 1 for the vertices of found_ during a call
 };
 
 }  // namespace shapelight
