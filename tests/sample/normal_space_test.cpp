@@ -58,6 +58,17 @@ TEST(NormalSpaceSampling, CellsHaveEqualArea) {
   EXPECT_LT(*high, 1.35 * *low);
 }
 
+TEST(NormalSpaceSampling, DrawsCellsInRandomOrder) {
+  std::vector<Vec3> normals(30, Vec3::UnitZ());
+  for (std::size_t i = 10; i < 30; ++i) normals[i] = i < 20 ? Vec3::UnitX() : Vec3::UnitY();
+  const SurfaceGraph graph = with_normals(normals);
+  std::array<int, 3> first{};
+  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+    ++first[sample_normal_space(graph, test::all_vertices(graph), {.count = 1}, {.seed = seed})[0] / 10];
+  }
+  for (const int count : first) EXPECT_NEAR(count, 100, 30);
+}
+
 TEST(NormalSpaceSampling, IsARanking) {
   const SurfaceGraph graph = test::ellipsoid_graph(500);
   const std::vector<Index> all = test::all_vertices(graph);

@@ -15,7 +15,7 @@ namespace shapelight {
 /// Parameters of sample_poisson().
 struct PoissonSamplingOptions {
   std::uint64_t seed = 0;  ///< the only source of randomness
-  int passes = 16;         ///< [passes] tries to find the radius of an exact count
+  int passes = 6;          ///< [passes] tries to find the radius of an exact count
 
   template <class Self, class Visitor>
   static void describe(Self& o, Visitor&& visit) {
