@@ -39,11 +39,13 @@ TEST(NormalSpaceSampling, CellsHaveEqualArea) {
   const SurfaceGraph graph = test::ellipsoid_graph(20000, Vec3::Ones());
   const std::vector<Index> chosen = sample_normal_space(graph, test::all_vertices(graph), {.count = 82});
   // Equal cells of 4 pi / 82 are at most about 0.6 across, and each holds a sample.
-  EXPECT_LT(test::brute_coverage(graph.normal, [&] {
-              std::vector<Vec3> normals;
-              for (const Index v : chosen) normals.push_back(graph.normal[v]);
-              return normals;
-            }()), 0.75);
+  EXPECT_LT(test::brute_coverage(graph.normal,
+                                 [&] {
+                                   std::vector<Vec3> normals;
+                                   for (const Index v : chosen) normals.push_back(graph.normal[v]);
+                                   return normals;
+                                 }()),
+            0.75);
   // Uniform directions, so equal areas hold equally many points: drawing nearly all leaves the few cells with the
   // largest surplus, which deviate from 20000 / 82 = 244 by noise only (sd 15.5).
   const std::vector<Index> most = sample_normal_space(graph, test::all_vertices(graph), {.count = 82 * 180});

@@ -32,9 +32,8 @@ struct PoissonSamplingOptions {
 /// `passes`; the few points that are still missing are farthest points, so nothing is ever cut off. Nearly all
 /// pairs then keep the radius, and the others lie just below it.
 /// Pre:    candidates ascending, unique, vertices of the graph.
-/// Post:   exactly target.count vertices, or a maximal set whose pairs are at least target.spacing apart; no duplicates.
-/// Throws: InvalidInput, Cancelled.
-/// Cost:   O(n log n) once and O(n) per pass, about 120 n bytes.
+/// Post:   exactly target.count vertices, or a maximal set whose pairs are at least target.spacing apart; no
+/// duplicates. Throws: InvalidInput, Cancelled. Cost:   O(n log n) once and O(n) per pass, about 120 n bytes.
 [[nodiscard]] std::vector<Index> sample_poisson(const SurfaceGraph& graph, std::span<const Index> candidates,
                                                 const SamplingTarget& target,
                                                 const PoissonSamplingOptions& options = {},
