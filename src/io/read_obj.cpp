@@ -94,7 +94,7 @@ class ObjReader {
     for (int axis = 0; axis < 3; ++axis) {
       const std::string_view token = next_token();
       if (token.empty() && axis >= needed) break;
-      vector[axis] = scanner_.need_double(token, fmt::format("number {} of at least {}", axis + 1, needed));
+      vector[axis] = scanner_.need_double(token, "a coordinate of 'vn' or 'vt'");
     }
     return vector;
   }
@@ -162,11 +162,11 @@ class ObjReader {
   // From 1, or negative and relative to the lines so far. Lines that are still to come are checked at the end.
   Index read_index(std::string_view token, Element& element) {
     const auto count = static_cast<std::int64_t>(element.count);
-    const std::int64_t number = scanner_.need_integer(token, fmt::format("a {} index", element.name));
+    const std::int64_t number = scanner_.need_integer(token, element.name);
     const bool in_range = number > 0 ? number <= static_cast<std::int64_t>(kMaxPoints) : -number <= count;
     if (number == 0 || !in_range) {
-      scanner_.fail(fmt::format("face has {} index {}, expected 1 .. or, counted from the last, -1 .. -{}", element.name,
-                                number, count));
+      scanner_.fail(fmt::format("face has {} {}, expected 1 or more, or down to -{} counted from the last",
+                                element.name, number, count));
     }
     const std::int64_t index = number > 0 ? number - 1 : count + number;
     if (index >= count && index > element.highest) {
@@ -179,7 +179,7 @@ class ObjReader {
   void check_references() const {
     for (const Element* element : {&vertex_, &texcoord_, &normal_}) {
       if (element->highest >= static_cast<std::int64_t>(element->count)) {
-        scanner_.fail_at(element->highest_line, fmt::format("face has {} index {}, expected 1 .. {}", element->name,
+        scanner_.fail_at(element->highest_line, fmt::format("face has {} {}, expected 1 .. {}", element->name,
                                                             element->highest + 1, element->count));
       }
     }
@@ -250,7 +250,7 @@ class ObjReader {
   const Source& source_;
   TextScanner scanner_;
   Geometry geometry_;
-  Element vertex_{"vertex"}, texcoord_{"texture"}, normal_{"normal"};
+  Element vertex_{"vertex index"}, texcoord_{"texture index"}, normal_{"normal index"};
   std::vector<std::array<float, 2>> texcoords_;
   std::vector<Vec3> normals_;
   std::array<std::vector<float>, 3> colors_;

@@ -26,8 +26,9 @@ class OffReader {
   }
 
  private:
-  void need_line(std::string_view what) {
-    if (!scanner_.next_data_line('#')) scanner_.fail(fmt::format("the file ends, expected {}", what));
+  void need_line(std::size_t found, std::size_t expected, std::string_view what) {
+    if (scanner_.next_data_line('#')) return;
+    scanner_.fail(fmt::format("the file ends, expected {} {}, found {}", expected, what, found));
   }
 
   // [ST][C][N]OFF; returns the first count if it follows, with or without a blank.
@@ -52,7 +53,7 @@ class OffReader {
 
   void read_counts(std::string_view first) {
     if (first.empty()) {
-      need_line("the numbers of vertices and faces");
+      need_line(0, 1, "line with the numbers of vertices and faces");
       first = scanner_.next_token();
     }
     const std::int64_t vertices = scanner_.need_integer(first, "the number of vertices");
@@ -74,7 +75,7 @@ class OffReader {
     geometry_.positions.reserve(vertex_count_);
     for (std::size_t i = 0; i < vertex_count_; ++i) {
       if ((i & 0xffff) == 0) source_.context.check();
-      need_line(fmt::format("{} vertices, found {}", vertex_count_, i));
+      need_line(i, vertex_count_, "vertices");
       geometry_.positions.push_back(read_vector("x y z"));
       if (has_normals_) normals_.push_back(read_vector("nx ny nz"));
       std::vector<std::string_view>& rest = tokens_;
@@ -128,7 +129,8 @@ class OffReader {
         geometry_.attributes.set({std::string(kColors[k]), std::vector<float>(colors_[k].begin(), colors_[k].end())});
       }
     } else {
-      set_colors(geometry_.attributes, std::span(kColors).first(colors_.size()), std::move(colors_));
+      const std::size_t channels = colors_.size();
+      set_colors(geometry_.attributes, std::span(kColors).first(channels), std::move(colors_));
     }
     if (!has_texcoords_) return;
     geometry_.attributes.set(float_column("s", std::move(texcoords_[0])));
@@ -139,7 +141,7 @@ class OffReader {
     geometry_.triangles.reserve(face_count_);
     for (std::size_t i = 0; i < face_count_; ++i) {
       if ((i & 0xffff) == 0) source_.context.check();
-      need_line(fmt::format("{} faces, found {}", face_count_, i));
+      need_line(i, face_count_, "faces");
       const std::int64_t corners = scanner_.need_integer(scanner_.next_token(), "the number of corners");
       if (corners < 3) scanner_.fail(fmt::format("a face with {} corners, expected at least 3", corners));
       if (corners > 3) ++polygon_count_;

@@ -59,7 +59,9 @@ class PtxReader {
     grid_.pixel.assign(pixels, kNoIndex);
     for (std::uint64_t i = 0; i < pixels; ++i) {
       if ((i & 0xffff) == 0) source_.context.check();
-      need_line(fmt::format("{} points, found {}", pixels, i));
+      if (!scanner_.next_line()) {
+        scanner_.fail(fmt::format("the file ends, expected {} points, found {}", pixels, i));
+      }
       read_pixel(i % grid_.height * grid_.width + i / grid_.height);
     }
     ++scan_count_;

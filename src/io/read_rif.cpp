@@ -10,7 +10,7 @@ Geometry read_rif(const Source& source) {
   for (;;) {
     const std::optional<std::string_view> line = scanner.next_line();
     if (!line) scanner.fail("the file ends, expected a line '|' behind the header");
-    if (*line == "|") break;
+    if (scanner.next_token() == "|" && scanner.next_token().empty()) break;
     comments.emplace_back(*line);
   }
   if (scanner.need_token("'float ascii R C'") != "float" || scanner.next_token() != "ascii") {

@@ -1,3 +1,5 @@
+#include <Eigen/Geometry>
+
 #include <bit>
 #include <limits>
 

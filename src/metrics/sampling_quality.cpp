@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <Eigen/Eigenvalues>
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -26,25 +25,18 @@ std::vector<std::uint8_t> feature_tenth(std::span<const double> importance) {
   std::vector<Index> order(importance.size());
   std::iota(order.begin(), order.end(), Index{0});
   const std::size_t count = (importance.size() + 9) / 10;
-  std::nth_element(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count - 1), order.end(),
-                   [&](Index a, Index b) {
-                     return importance[a] > importance[b] || (importance[a] == importance[b] && a < b);
-                   });
+  std::nth_element(
+      order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count - 1), order.end(),
+      [&](Index a, Index b) { return importance[a] > importance[b] || (importance[a] == importance[b] && a < b); });
   std::vector<std::uint8_t> feature(importance.size(), 0);
   for (std::size_t k = 0; k < count; ++k) feature[order[k]] = 1;
   return feature;
 }
 
-/// Distance from every query to the (rank + 1)-th nearest point of the tree.
-std::vector<double> nearest_distances(const KdTree& tree, std::span<const Vec3> queries, std::size_t rank,
-                                      const RunContext& context) {
+std::vector<double> nearest_distances(const KdTree& tree, std::span<const Vec3> queries, const RunContext& context) {
   std::vector<double> distance(queries.size());
   parallel::for_chunks(context, queries.size(), [&](std::size_t begin, std::size_t end) {
-    std::vector<Neighbor> found;
-    for (std::size_t i = begin; i < end; ++i) {
-      tree.nearest(queries[i], rank + 1, found);
-      distance[i] = std::sqrt(found.back().distance_sq);
-    }
+    for (std::size_t i = begin; i < end; ++i) distance[i] = std::sqrt(tree.nearest(queries[i]).distance_sq);
   });
   return distance;
 }
@@ -76,14 +68,17 @@ void measure_features(std::span<const Vec3> reference, std::span<const double> i
   quality.feature_coverage_mean = feature_coverage.mean;
   quality.feature_coverage_max = feature_coverage.max;
   const KdTree tree(reference);
-  quality.feature_share = parallel::sum(context, samples.size(), [&](std::size_t i) {
-                            return static_cast<double>(feature[tree.nearest(samples[i]).index]);
-                          }) / static_cast<double>(samples.size());
+  quality.feature_share =
+      parallel::sum(context, samples.size(),
+                    [&](std::size_t i) { return static_cast<double>(feature[tree.nearest(samples[i]).index]); }) /
+      static_cast<double>(samples.size());
 }
 
 void measure_spacing(const KdTree& tree, std::span<const Vec3> samples, const RunContext& context,
                      SamplingQuality& quality) {
-  const std::vector<double> spacing = nearest_distances(tree, samples, 1, context);
+  const std::vector<Index> nearest = tree.all_nearest(1, context);
+  std::vector<double> spacing(samples.size());
+  for (std::size_t i = 0; i < samples.size(); ++i) spacing[i] = (samples[i] - samples[nearest[i]]).norm();
   quality.spacing_mean = mean_and_max(spacing, {}).mean;
   quality.spacing_min = *std::min_element(spacing.begin(), spacing.end());
   double variance = 0.0;
@@ -92,13 +87,25 @@ void measure_spacing(const KdTree& tree, std::span<const Vec3> samples, const Ru
   quality.spacing_cv = quality.spacing_mean > 0.0 ? std::sqrt(variance) / quality.spacing_mean : 0.0;
 }
 
+double surface_variation(std::span<const Vec3> points) {
+  Vec3 mean = Vec3::Zero();
+  for (const Vec3& p : points) mean += p;
+  mean /= static_cast<double>(points.size());
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  for (const Vec3& p : points) covariance += (p - mean) * (p - mean).transpose();
+  const Vec3 lambda = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance, Eigen::EigenvaluesOnly).eigenvalues();
+  const double sum = lambda.sum();
+  return sum > 0.0 ? std::max(0.0, lambda[0]) / sum : 0.0;
+}
+
 }  // namespace
 
 SamplingQuality measure_sampling(std::span<const Vec3> reference, std::span<const double> importance,
                                  std::span<const Vec3> samples, const RunContext& context) {
   if (reference.empty() || samples.empty()) {
-    throw InvalidInput(fmt::format("sampling quality: {} reference points and {} samples, expected at least one of each",
-                                   reference.size(), samples.size()));
+    throw InvalidInput(
+        fmt::format("sampling quality: {} reference points and {} samples, expected at least one of each",
+                    reference.size(), samples.size()));
   }
   if (!importance.empty() && importance.size() != reference.size()) {
     throw InvalidInput(fmt::format("sampling quality: {} importance values, expected {}, one per reference point",
@@ -108,12 +115,13 @@ SamplingQuality measure_sampling(std::span<const Vec3> reference, std::span<cons
   require_finite(samples, "sampling quality: samples");
   for (std::size_t i = 0; i < importance.size(); ++i) {
     if (!std::isfinite(importance[i])) {
-      throw InvalidInput(fmt::format("sampling quality: importance {} is {}, expected a finite number", i, importance[i]));
+      throw InvalidInput(
+          fmt::format("sampling quality: importance {} is {}, expected a finite number", i, importance[i]));
     }
   }
   SamplingQuality quality;
   const KdTree tree(samples);
-  const std::vector<double> coverage = nearest_distances(tree, reference, 0, context);
+  const std::vector<double> coverage = nearest_distances(tree, reference, context);
   const MeanMax all = mean_and_max(coverage, {});
   quality.coverage_mean = all.mean;
   quality.coverage_max = all.max;
@@ -125,23 +133,16 @@ SamplingQuality measure_sampling(std::span<const Vec3> reference, std::span<cons
 std::vector<double> surface_variation_knn(std::span<const Vec3> points, std::size_t k, const RunContext& context) {
   if (k < 3) throw InvalidInput(fmt::format("surface variation: k = {}, expected at least 3", k));
   require_finite(points, "surface variation");
-  const KdTree tree(points);
+  const std::vector<Index> nearest = KdTree(points).all_nearest(k - 1, context);
   std::vector<double> variation(points.size());
   parallel::for_chunks(context, points.size(), [&](std::size_t begin, std::size_t end) {
-    std::vector<Neighbor> found;
+    std::vector<Vec3> offsets;  // from the point itself, so that a far origin costs no digits
     for (std::size_t i = begin; i < end; ++i) {
-      tree.nearest(points[i], k, found);
-      Vec3 mean = Vec3::Zero();  // relative to the point, so that a far origin costs no digits
-      for (const Neighbor& neighbor : found) mean += points[neighbor.index] - points[i];
-      mean /= static_cast<double>(found.size());
-      Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-      for (const Neighbor& neighbor : found) {
-        const Vec3 d = points[neighbor.index] - points[i] - mean;
-        covariance += d * d.transpose();
+      offsets.assign(1, Vec3::Zero());
+      for (std::size_t j = i * (k - 1); j < (i + 1) * (k - 1) && nearest[j] != kNoIndex; ++j) {
+        offsets.push_back(points[nearest[j]] - points[i]);
       }
-      const Vec3 lambda = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance, Eigen::EigenvaluesOnly).eigenvalues();
-      const double sum = lambda.sum();
-      variation[i] = sum > 0.0 ? std::max(0.0, lambda[0]) / sum : 0.0;
+      variation[i] = surface_variation(offsets);
     }
   });
   return variation;

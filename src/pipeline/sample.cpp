@@ -48,26 +48,14 @@ Choice choices(const SurfaceGraph& graph, bool skip_boundary) {
   return choice;
 }
 
-void check_size(const SampleSize& size) {
-  if (size.count.has_value() + size.ratio.has_value() + size.spacing.has_value() != 1) {
-    throw InvalidInput("expected exactly one of --count, --ratio and --spacing");
-  }
-  if (size.count && *size.count == 0) throw InvalidInput("--count: 0 is out of range, expected at least 1 point");
-  if (size.ratio && !(*size.ratio > 0.0 && *size.ratio <= 1.0)) {
-    throw InvalidInput(fmt::format("--ratio: {:g} is out of range, expected more than 0 and at most 1", *size.ratio));
-  }
-  if (size.spacing && !(*size.spacing > 0.0 && std::isfinite(*size.spacing))) {
-    throw InvalidInput(fmt::format("--spacing: {:g} is out of range, expected a positive length", *size.spacing));
-  }
-}
-
 std::size_t count_of(const SampleSize& size, std::size_t usable, std::size_t reachable) {
   if (size.spacing) return 0;
   const auto rounded = [&] { return std::max<std::uint64_t>(1, std::llround(*size.ratio * static_cast<double>(usable))); };
   const std::uint64_t count = size.count ? *size.count : rounded();
   if (count > reachable) {
     throw TargetUnreachable(fmt::format("{} points asked for, but only {} of {} finite points can be chosen", count,
-                                        reachable, usable));
+                                        reachable, usable),
+                            reachable);
   }
   return count;
 }
@@ -108,6 +96,19 @@ std::vector<Index> run_method(const SurfaceGraph& graph, GeometryKind kind, std:
 
 }  // namespace
 
+void validate(const SampleSize& size) {
+  if (size.count.has_value() + size.ratio.has_value() + size.spacing.has_value() != 1) {
+    throw InvalidInput("expected exactly one of --count, --ratio and --spacing");
+  }
+  if (size.count && *size.count == 0) throw InvalidInput("--count: 0 is out of range, expected at least 1 point");
+  if (size.ratio && !(*size.ratio > 0.0 && *size.ratio <= 1.0)) {
+    throw InvalidInput(fmt::format("--ratio: {:g} is out of range, expected more than 0 and at most 1", *size.ratio));
+  }
+  if (size.spacing && !(*size.spacing > 0.0 && std::isfinite(*size.spacing))) {
+    throw InvalidInput(fmt::format("--spacing: {:g} is out of range, expected a positive length", *size.spacing));
+  }
+}
+
 SampleOptions sample_preset(Preset preset) {
   SampleOptions options;
   options.preset = preset;
@@ -117,7 +118,7 @@ SampleOptions sample_preset(Preset preset) {
 
 SampleResult sample(const Geometry& geometry, const SampleSize& size, const SampleOptions& options,
                     const RunContext& context) {
-  check_size(size);
+  validate(size);
   validate_options(options);
   const RunContext prepare = context.phase(0.0, 0.35, "build graph");
   const BuiltGraph built = needs_neighborhood(options) ? build_graph(geometry, options.fields.graph, prepare)

@@ -37,7 +37,7 @@ std::size_t count_cells(std::span<const Vec3> points, const Lattice& lattice, st
 
 double Lattice::min_cell(const BoundingBox& box) {
   const double extent = (box.max - box.min).maxCoeff();
-  return extent > 0.0 ? extent / (kMaxCells - 1.0) : 1.0;
+  return extent > 0.0 ? extent / (kMaxCells - 3.0) : 1.0;
 }
 
 CellGrid::CellGrid(std::span<const Vec3> points, double cell) : lattice_(bounding_box(points), cell), cell_(cell) {

@@ -13,29 +13,34 @@
 namespace shapelight {
 
 /// Cubic cells over a bounding box, numbered so that a cell and its neighbours along z have consecutive keys.
+/// The centre of the box is the centre of a cell, so that a flat sheet does not lie on the border of its cells.
 class Lattice {
  public:
-  static constexpr int kBits = 21;                                ///< per axis
+  static constexpr int kBits = 21;                               ///< per axis
   static constexpr double kMaxCells = double{(1 << kBits) - 2};  ///< per axis; one cell stays free on either side
 
-  Lattice(const BoundingBox& box, double cell) : origin_(box.min), per_length_(1.0 / cell) {}
+  Lattice(const BoundingBox& box, double cell) : center_(box.center()), per_length_(1.0 / cell) {
+    const Vec3 half = 0.5 * per_length_ * (box.max - box.min);
+    shift_ = (half.array() + 0.5).floor() + 1.5;
+  }
 
   [[nodiscard]] std::uint64_t key(const Vec3& p) const {
-    const Vec3 q = (p - origin_) * per_length_;
-    auto axis = [&](int a) { return static_cast<std::uint64_t>(q[a]) + 1; };
+    const Vec3 q = (p - center_) * per_length_ + shift_;
+    auto axis = [&](int a) { return static_cast<std::uint64_t>(q[a]); };
     return (((axis(0) << kBits) | axis(1)) << kBits) | axis(2);
   }
   /// Position within its cell, each coordinate in [0, 1).
   [[nodiscard]] Vec3 within(const Vec3& p) const {
-    const Vec3 q = (p - origin_) * per_length_;
+    const Vec3 q = (p - center_) * per_length_ + shift_;
     return q - q.array().floor().matrix();
   }
   /// Smallest cell that a key can hold. Positive, also for a box without extent.
   [[nodiscard]] static double min_cell(const BoundingBox& box);
 
  private:
-  Vec3 origin_;
+  Vec3 center_;
   double per_length_;
+  Vec3 shift_;  // [cells] makes the smallest coordinate at least 1, so that neighbours never wrap around
 };
 
 /// Points sorted by lattice cell, in flat arrays. A slot is a place in that order.
@@ -69,12 +74,12 @@ class CellGrid {
 
   Lattice lattice_;
   double cell_;
-  std::vector<Vec3> point_;                  // by slot
-  std::vector<Index> index_;                 // by slot
+  std::vector<Vec3> point_;   // by slot
+  std::vector<Index> index_;  // by slot
   std::vector<std::uint32_t> cell_of_slot_;
-  std::vector<std::uint32_t> begin_;         // first slot of every cell, and the end
-  std::vector<std::uint32_t> run_begin_;     // by cell, into runs_
-  std::vector<Range> runs_;                  // non-empty columns of three cells around a cell, at most nine
+  std::vector<std::uint32_t> begin_;      // first slot of every cell, and the end
+  std::vector<std::uint32_t> run_begin_;  // by cell, into runs_
+  std::vector<Range> runs_;               // non-empty columns of three cells around a cell, at most nine
 };
 
 /// Throws InvalidInput that names the method when the cells are too small to be numbered.

@@ -12,7 +12,10 @@
 namespace shapelight {
 namespace {
 
-/// The point of every cell that is nearest to the centroid of the cell's points.
+// Two points are equally far from their centroid; rounding must not choose between them, or units would matter.
+constexpr double kTie = 1.0 - 1e-9;
+
+/// The point of every cell that is nearest to the centroid of the cell's points; the first one of several.
 std::vector<Index> nearest_to_centroids(const CellGrid& grid, const RunContext& context) {
   std::vector<Index> chosen(grid.num_cells());
   parallel::for_chunks(context, grid.num_cells(), [&](std::size_t cells_begin, std::size_t cells_end) {
@@ -25,7 +28,7 @@ std::vector<Index> nearest_to_centroids(const CellGrid& grid, const RunContext& 
       double best = std::numeric_limits<double>::infinity();
       for (std::uint32_t slot = begin; slot < end; ++slot) {
         const double distance_sq = (grid.point(slot) - centroid).squaredNorm();
-        if (distance_sq < best) {
+        if (distance_sq < kTie * best) {
           best = distance_sq;
           chosen[cell] = grid.index(slot);
         }

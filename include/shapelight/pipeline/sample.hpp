@@ -34,6 +34,9 @@ struct SampleSize {
   std::optional<double> spacing;       ///< [input length unit] see the method for what it bounds
 };
 
+/// Throws InvalidInput unless exactly one member is set and in range.
+void validate(const SampleSize& size);
+
 /// What sample() does; start from sample_preset().
 struct SampleOptions {
   Preset preset = Preset::Detail;  ///< Paper: the paper's sampler in place of ours

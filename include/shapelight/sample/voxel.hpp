@@ -13,7 +13,7 @@ namespace shapelight {
 
 /// Parameters of sample_voxel().
 struct VoxelSamplingOptions {
-  double fill_share = 0.12;  ///< [1] share of an exact count that closes the largest gaps instead of filling a voxel
+  double fill_share = 0.15;  ///< [1] share of an exact count that closes the largest gaps instead of filling a voxel
 
   template <class Self, class Visitor>
   static void describe(Self& o, Visitor&& visit) {
@@ -23,7 +23,7 @@ struct VoxelSamplingOptions {
 };
 
 /// One point per occupied cube of a regular grid: the one nearest to the centroid of the cube's points, so always an
-/// input point. The grid starts at the smallest corner of the candidates' bounding box.
+/// input point. The centre of the candidates' bounding box is the centre of a cube.
 /// With target.spacing that is all: spacing is the edge of a cube. With target.count the edge is searched so that about
 /// (1 - fill_share) of the points come from cubes; the others are chosen by farthest point, which makes the
 /// count exact and closes the gaps that a grid leaves where the surface cuts corners of cubes.
