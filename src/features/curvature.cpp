@@ -1,7 +1,6 @@
 #include "shapelight/features/curvature.hpp"
 
 #include <Eigen/Cholesky>
-
 #include <algorithm>
 #include <cmath>
 
@@ -18,8 +17,8 @@ bool has_normal(const SurfaceGraph& graph, std::size_t i) { return !graph.normal
 // Share of the even-ring weight that keeps directions the ring does not see at no deviation.
 constexpr double kRidge = 0.02;
 
-// Euler's theorem: the normal curvature at angle t is mean + re cos 2t + im sin 2t; fitted to the edges by weighted least
-// squares. Over a ring with even directions the normal matrix is diag(1, 1/2, 1/2), and the solution is Taubin's
+// Euler's theorem: the normal curvature at angle t is mean + re cos 2t + im sin 2t; fitted to the edges by weighted
+// least squares. Over a ring with even directions the normal matrix is diag(1, 1/2, 1/2), and the solution is Taubin's
 // k1 = 3 m1 - m2, k2 = 3 m2 - m1 in closed form; over an uneven one Taubin's means are biased and this is not.
 TangentTensor taubin_tensor(const SurfaceGraph& graph, std::size_t i, const TangentFrame& frame) {
   Eigen::Matrix3d matrix = Eigen::Matrix3d::Zero();
@@ -47,23 +46,26 @@ std::vector<TangentTensor> initial_tensors(const SurfaceGraph& graph, const Curv
                                            const RunContext& context) {
   std::vector<TangentTensor> tensors(graph.size());
   const auto count = static_cast<std::size_t>(options.neighbors);
-  parallel::for_chunks(context, graph.size(), [&](std::size_t begin, std::size_t end) {
-    NearestOfRings nearest(graph);
-    for (std::size_t i = begin; i < end; ++i) {
-      if (!has_normal(graph, i)) continue;
-      const auto center = static_cast<Index>(i);
-      const TangentFrame frame = tangent_frame(graph.normal[i]);
-      if (options.method == CurvatureMethod::Taubin) {
-        tensors[i] = taubin_tensor(graph, i, frame);
-        continue;
-      }
-      const auto others = nearest.find(center, count);
-      if (others.size() < 3) continue;
-      tensors[i] = options.method == CurvatureMethod::Quadric
-                       ? shape_operator(fit_quadric(graph, center, frame, others, FitWeight::Gaussian))
-                       : fit_normal_field(graph, center, frame, others);
-    }
-  }, ring_chunk(graph));
+  parallel::for_chunks(
+      context, graph.size(),
+      [&](std::size_t begin, std::size_t end) {
+        NearestOfRings nearest(graph);
+        for (std::size_t i = begin; i < end; ++i) {
+          if (!has_normal(graph, i)) continue;
+          const auto center = static_cast<Index>(i);
+          const TangentFrame frame = tangent_frame(graph.normal[i]);
+          if (options.method == CurvatureMethod::Taubin) {
+            tensors[i] = taubin_tensor(graph, i, frame);
+            continue;
+          }
+          const auto others = nearest.find(center, count);
+          if (others.size() < 3) continue;
+          tensors[i] = options.method == CurvatureMethod::Quadric
+                           ? shape_operator(fit_quadric(graph, center, frame, others, FitWeight::Gaussian))
+                           : fit_normal_field(graph, center, frame, others);
+        }
+      },
+      ring_chunk(graph));
   return tensors;
 }
 

@@ -1,7 +1,6 @@
 #include "shapelight/features/surface_variation.hpp"
 
 #include <Eigen/Core>
-
 #include <algorithm>
 #include <cmath>
 
@@ -16,7 +15,8 @@ using Moments = Eigen::Array<double, 10, 1>;
 
 Moments moments_of(const Vec3& p) {
   Moments m;
-  m << p.x(), p.y(), p.z(), p.x() * p.x(), p.x() * p.y(), p.x() * p.z(), p.y() * p.y(), p.y() * p.z(), p.z() * p.z(), 0.0;
+  m << p.x(), p.y(), p.z(), p.x() * p.x(), p.x() * p.y(), p.x() * p.z(), p.y() * p.y(), p.y() * p.z(), p.z() * p.z(),
+      0.0;
   return m;
 }
 
@@ -55,8 +55,7 @@ double variation_of(const Moments& m) {
   const double trace = xx + yy + zz;
   if (!(trace > 0.0)) return 0.0;
   const double minors = xx * yy - xy * xy + xx * zz - xz * xz + yy * zz - yz * yz;
-  const double determinant =
-      xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz);
+  const double determinant = xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz);
   return std::clamp(smallest_eigenvalue(trace, minors, determinant) / trace, 0.0, 1.0 / 3.0);
 }
 
@@ -65,9 +64,11 @@ std::vector<double> variation_by_diffusion(const SurfaceGraph& graph, int neighb
   const double ring = static_cast<double>(graph.neighbors.size()) / n + 1.0;
   const int passes = std::max(1, static_cast<int>(std::lround(neighbors / ring)));
 
-  std::vector<Moments> moments = averaged(graph, [&](std::size_t i) { return moments_of(graph.position[i]); }, context);
+  std::vector<Moments> moments = averaged(
+      graph, [&](std::size_t i) { return moments_of(graph.position[i]); }, context);
   for (int pass = 1; pass < passes; ++pass) {
-    moments = averaged(graph, [&](std::size_t i) -> const Moments& { return moments[i]; }, context);
+    moments = averaged(
+        graph, [&](std::size_t i) -> const Moments& { return moments[i]; }, context);
   }
   std::vector<double> variation(graph.size());
   parallel::for_chunks(context, graph.size(), [&](std::size_t begin, std::size_t end) {

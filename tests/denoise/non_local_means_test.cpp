@@ -37,10 +37,14 @@ using Net = Eigen::Matrix4d;
 double basis(int k, double u) {
   const double v = 1.0 - u;
   switch (k) {
-    case 0: return v * v * v / 6.0;
-    case 1: return (3 * u * u * u - 6 * u * u + 4) / 6.0;
-    case 2: return (3 * v * v * v - 6 * v * v + 4) / 6.0;
-    default: return u * u * u / 6.0;
+    case 0:
+      return v * v * v / 6.0;
+    case 1:
+      return (3 * u * u * u - 6 * u * u + 4) / 6.0;
+    case 2:
+      return (3 * v * v * v - 6 * v * v + 4) / 6.0;
+    default:
+      return u * u * u / 6.0;
   }
 }
 
@@ -85,7 +89,8 @@ double distance(const Net& a, Net b) {
   return least;
 }
 
-std::vector<double> filter(const SurfaceGraph& graph, const std::vector<double>& field, const std::vector<Vec3>& directions) {
+std::vector<double> filter(const SurfaceGraph& graph, const std::vector<double>& field,
+                           const std::vector<Vec3>& directions) {
   std::vector<Net> nets;
   for (Index i = 0; i < graph.size(); ++i) nets.push_back(patch(graph, field, directions[i], i));
   std::vector<double> between;
@@ -127,7 +132,8 @@ TEST(NonLocalMeans, QuarterTurnsOfTheFrameChangeNothing) {
   const std::vector<Vec3> directions = any_directions(graph);
   std::vector<Vec3> turned = directions;
   for (std::size_t i = 0; i < graph.size(); ++i) {
-    for (std::uint64_t turns = random_bits(1, 1, i) % 4; turns > 0; --turns) turned[i] = graph.normal[i].cross(turned[i]);
+    for (std::uint64_t turns = random_bits(1, 1, i) % 4; turns > 0; --turns)
+      turned[i] = graph.normal[i].cross(turned[i]);
   }
   const std::vector<double> a = non_local_means(graph, field, directions), b = non_local_means(graph, field, turned);
   for (std::size_t i = 0; i < field.size(); ++i) EXPECT_NEAR(a[i], b[i], 1e-4);
@@ -136,7 +142,8 @@ TEST(NonLocalMeans, QuarterTurnsOfTheFrameChangeNothing) {
 TEST(NonLocalMeans, AConstantStaysAndAnOffsetPassesThrough) {
   const SurfaceGraph graph = graph_of_mesh(sphere(3, 1.0, 0.2));
   const std::vector<Vec3> directions = any_directions(graph);
-  for (const double v : non_local_means(graph, std::vector<double>(graph.size(), 0.7), directions)) EXPECT_NEAR(v, 0.7, 1e-12);
+  for (const double v : non_local_means(graph, std::vector<double>(graph.size(), 0.7), directions))
+    EXPECT_NEAR(v, 0.7, 1e-12);
   std::vector<double> field = random_field(graph.size());
   const std::vector<double> a = non_local_means(graph, field, directions);
   for (double& v : field) v += 0.5;
@@ -194,7 +201,8 @@ TEST(NonLocalMeans, DoesNotDependOnThreads) {
   const SurfaceGraph graph = graph_of_mesh(sphere(5, 1.0));
   const std::vector<double> field = random_field(graph.size());
   const std::vector<Vec3> directions = any_directions(graph);
-  expect_same_for_any_number_of_threads([&](const RunContext& context) { return non_local_means(graph, field, directions, {}, context); });
+  expect_same_for_any_number_of_threads(
+      [&](const RunContext& context) { return non_local_means(graph, field, directions, {}, context); });
 }
 
 }  // namespace

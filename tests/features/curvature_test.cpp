@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
-
 #include <algorithm>
 
 #include "shapelight/core/error.hpp"
@@ -15,7 +14,8 @@ namespace {
 
 using namespace shapelight::testing;
 
-constexpr CurvatureMethod kMethods[] = {CurvatureMethod::Taubin, CurvatureMethod::Quadric, CurvatureMethod::NormalField};
+constexpr CurvatureMethod kMethods[] = {CurvatureMethod::Taubin, CurvatureMethod::Quadric,
+                                        CurvatureMethod::NormalField};
 
 CurvatureOptions with(CurvatureMethod method, int passes = 0) {
   CurvatureOptions options;

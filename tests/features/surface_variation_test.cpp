@@ -4,7 +4,6 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
-
 #include <algorithm>
 
 #include "support/determinism.hpp"
@@ -56,7 +55,8 @@ TEST(SurfaceVariation, DiffusionRanksLikeTheNearest) {
 
 TEST(SurfaceVariation, PlaneIsZeroAndAnIsotropicCloudAThird) {
   for (const SurfaceVariationMethod method : kMethods) {
-    for (const double v : compute_surface_variation(graph_of_mesh(plane(15, 1.0, 0.2)), with(method))) EXPECT_LT(v, 1e-12);
+    for (const double v : compute_surface_variation(graph_of_mesh(plane(15, 1.0, 0.2)), with(method)))
+      EXPECT_LT(v, 1e-12);
   }
   // The corners of a cube about its centre: three equal eigenvalues, where Newton's steps converge slowest.
   std::vector<Vec3> cube = {Vec3::Zero()};
@@ -86,7 +86,8 @@ TEST(SurfaceVariation, EmptyIsolatedAndCollinear) {
     EXPECT_TRUE(compute_surface_variation(isolated(0), with(method)).empty());
     EXPECT_EQ(compute_surface_variation(isolated(4), with(method)), std::vector<double>(4, 0.0));
     const std::vector<Vec3> line = {{0, 0, 0}, {1, 1, 0}, {2, 2, 0}};
-    for (const double v : compute_surface_variation(graph_of_edges(line, {{0, 1}, {1, 2}}), with(method))) EXPECT_EQ(v, 0.0);
+    for (const double v : compute_surface_variation(graph_of_edges(line, {{0, 1}, {1, 2}}), with(method)))
+      EXPECT_EQ(v, 0.0);
   }
 }
 

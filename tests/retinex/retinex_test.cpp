@@ -51,7 +51,8 @@ TEST(Retinex, AgreesWithTheEquations) {
 TEST(Retinex, AConstantFieldHasNoDetail) {
   const SurfaceGraph graph = graph_of_mesh(sphere(3, 1.0, 0.2));
   for (const double value : {-1.0, -0.3, 0.0, 1.0}) {
-    for (const double r : decompose_retinex(graph, std::vector<double>(graph.size(), value)).reflectance) EXPECT_NEAR(r, 0.0, 1e-15);
+    for (const double r : decompose_retinex(graph, std::vector<double>(graph.size(), value)).reflectance)
+      EXPECT_NEAR(r, 0.0, 1e-15);
   }
 }
 
@@ -74,7 +75,8 @@ TEST(Retinex, StaysWithinItsBounds) {
 TEST(Retinex, KeepsAStepInTheIlluminationAndPutsTextureIntoTheReflectance) {
   const SurfaceGraph graph = graph_of_mesh(plane(30, 1.0));
   std::vector<double> field(graph.size());
-  for (std::size_t i = 0; i < field.size(); ++i) field[i] = (i % 30 < 15 ? -0.8 : 0.8) + 0.1 * (i % 2 == 0 ? 1.0 : -1.0);
+  for (std::size_t i = 0; i < field.size(); ++i)
+    field[i] = (i % 30 < 15 ? -0.8 : 0.8) + 0.1 * (i % 2 == 0 ? 1.0 : -1.0);
   const RetinexResult found = decompose_retinex(graph, field);
   for (std::size_t i = 0; i < field.size(); ++i) {
     EXPECT_NEAR(found.illumination[i], i % 30 < 15 ? 0.1 : 0.9, 0.04);

@@ -29,7 +29,8 @@ std::vector<double> random_field(std::size_t n, std::uint64_t seed) {
 Labels canonical(const Labels& label) {
   std::map<std::uint32_t, std::uint32_t> number;
   Labels result;
-  for (const std::uint32_t l : label) result.push_back(number.try_emplace(l, static_cast<std::uint32_t>(number.size())).first->second);
+  for (const std::uint32_t l : label)
+    result.push_back(number.try_emplace(l, static_cast<std::uint32_t>(number.size())).first->second);
   return result;
 }
 
@@ -68,7 +69,8 @@ bool too_fine(const std::vector<Edge>& sorted, const Labels& label, double scale
   const std::uint32_t count = 1 + *std::max_element(label.begin(), label.end());
   std::vector<double> tolerance(count);
   for (std::uint32_t r = 0; r < count; ++r) {
-    tolerance[r] = internal_difference(sorted, label, r) + scale / static_cast<double>(std::count(label.begin(), label.end(), r));
+    tolerance[r] =
+        internal_difference(sorted, label, r) + scale / static_cast<double>(std::count(label.begin(), label.end(), r));
   }
   std::map<std::pair<std::uint32_t, std::uint32_t>, double> least;  // Dif of eq. 10
   for (const Edge& e : sorted) {
@@ -87,9 +89,11 @@ Labels naive(const SurfaceGraph& graph, const std::vector<double>& field, double
     const std::uint32_t a = label[e.i], b = label[e.j];
     if (a == b) continue;
     const auto tolerance = [&](std::uint32_t r) {
-      return internal_difference(sorted, label, r) + scale / static_cast<double>(std::count(label.begin(), label.end(), r));
+      return internal_difference(sorted, label, r) +
+             scale / static_cast<double>(std::count(label.begin(), label.end(), r));
     };
-    if (e.w <= std::min(tolerance(a), tolerance(b))) std::replace(label.begin(), label.end(), std::uint32_t{b}, std::uint32_t{a});
+    if (e.w <= std::min(tolerance(a), tolerance(b)))
+      std::replace(label.begin(), label.end(), std::uint32_t{b}, std::uint32_t{a});
   }
   return canonical(label);
 }
@@ -99,7 +103,8 @@ TEST(Segmentation, AgreesWithTheNaiveForm) {
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
     const std::vector<double> field = random_field(graph.size(), seed);
     for (const double scale : {0.0, 0.25, 1.0, 4.0}) {
-      EXPECT_EQ(segment_field(graph, field, only_predicate(scale)).label, naive(graph, field, scale)) << seed << " " << scale;
+      EXPECT_EQ(segment_field(graph, field, only_predicate(scale)).label, naive(graph, field, scale))
+          << seed << " " << scale;
     }
   }
 }
@@ -115,7 +120,8 @@ TEST(Segmentation, IsNotTooFine) {
 
 // Definition 2, over all refinements of small segmentations: every proper one is too fine.
 TEST(Segmentation, IsNotTooCoarse) {
-  const std::set<std::pair<Index, Index>> links = {{0, 1}, {1, 2}, {2, 3}, {3, 4}, {4, 5}, {0, 3}, {1, 4}, {2, 5}, {0, 4}};
+  const std::set<std::pair<Index, Index>> links = {{0, 1}, {1, 2}, {2, 3}, {3, 4}, {4, 5},
+                                                   {0, 3}, {1, 4}, {2, 5}, {0, 4}};
   const SurfaceGraph graph = graph_of_edges(std::vector<Vec3>(6, Vec3::Zero()), links);
   std::size_t refinements = 0;
   for (std::uint64_t seed = 0; seed < 40; ++seed) {
@@ -135,7 +141,9 @@ TEST(Segmentation, IsNotTooCoarse) {
       Labels component = label;
       for (std::size_t i = 0; i < 6; ++i) component[i] = static_cast<std::uint32_t>(i);
       for (const Edge& e : edges) {
-        if (label[e.i] == label[e.j]) std::replace(component.begin(), component.end(), std::uint32_t{component[e.j]}, std::uint32_t{component[e.i]});
+        if (label[e.i] == label[e.j])
+          std::replace(component.begin(), component.end(), std::uint32_t{component[e.j]},
+                       std::uint32_t{component[e.i]});
       }
       if (canonical(component) != label) continue;
       ++refinements;
@@ -173,13 +181,16 @@ TEST(Segmentation, EmptyIsolatedAndBadInput) {
   EXPECT_EQ(segment_field(isolated(1), std::vector<double>{0.5}).count, 1U);
   EXPECT_EQ(segment_field(isolated(3), std::vector<double>(3, 0.5)).label, (Labels{0, 1, 2}));
   EXPECT_THROW(static_cast<void>(segment_field(isolated(3), std::vector<double>(2, 0.5))), InvalidInput);
-  EXPECT_THROW(static_cast<void>(segment_field(isolated(1), std::vector<double>{std::numeric_limits<double>::quiet_NaN()})), InvalidInput);
+  EXPECT_THROW(
+      static_cast<void>(segment_field(isolated(1), std::vector<double>{std::numeric_limits<double>::quiet_NaN()})),
+      InvalidInput);
 }
 
 TEST(Segmentation, DoesNotDependOnThreads) {
   const SurfaceGraph graph = graph_of_mesh(sphere(5, 1.0));
   const std::vector<double> field = random_field(graph.size(), 3);
-  expect_same_for_any_number_of_threads([&](const RunContext& context) { return segment_field(graph, field, {}, context).label; });
+  expect_same_for_any_number_of_threads(
+      [&](const RunContext& context) { return segment_field(graph, field, {}, context).label; });
 }
 
 }  // namespace

@@ -81,7 +81,9 @@ inline Shape height_field(std::string name, Index side, double step, double a, d
   return shape;
 }
 
-inline Shape plane(Index side, double step, double jitter = 0.0) { return height_field("plane", side, step, 0, 0, jitter); }
+inline Shape plane(Index side, double step, double jitter = 0.0) {
+  return height_field("plane", side, step, 0, 0, jitter);
+}
 inline Shape saddle(Index side, double step, double jitter = 0.0) {
   return height_field("saddle", side, step, 1.0, -1.0, jitter);
 }
@@ -89,11 +91,11 @@ inline Shape saddle(Index side, double step, double jitter = 0.0) {
 /// Icosahedron, every triangle cut into 4^levels, on a sphere: 10 x 4^levels + 2 vertices. `jitter` in edge lengths.
 inline Shape sphere(int levels, double radius, double jitter = 0.0) {
   const double g = (1.0 + std::sqrt(5.0)) / 2.0;
-  std::vector<Vec3> p = {{-1, g, 0}, {1, g, 0}, {-1, -g, 0}, {1, -g, 0}, {0, -1, g}, {0, 1, g},
-                         {0, -1, -g}, {0, 1, -g}, {g, 0, -1}, {g, 0, 1}, {-g, 0, -1}, {-g, 0, 1}};
-  std::vector<Triangle> faces = {{0, 11, 5}, {0, 5, 1}, {0, 1, 7}, {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
-                                 {11, 10, 2}, {10, 7, 6}, {7, 1, 8}, {3, 9, 4}, {3, 4, 2}, {3, 2, 6}, {3, 6, 8},
-                                 {3, 8, 9}, {4, 9, 5}, {2, 4, 11}, {6, 2, 10}, {8, 6, 7}, {9, 8, 1}};
+  std::vector<Vec3> p = {{-1, g, 0},  {1, g, 0},  {-1, -g, 0}, {1, -g, 0}, {0, -1, g},  {0, 1, g},
+                         {0, -1, -g}, {0, 1, -g}, {g, 0, -1},  {g, 0, 1},  {-g, 0, -1}, {-g, 0, 1}};
+  std::vector<Triangle> faces = {{0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
+                                 {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
+                                 {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
   for (Vec3& v : p) v.normalize();
   for (int level = 0; level < levels; ++level) {
     std::map<std::pair<Index, Index>, Index> middle;

@@ -35,13 +35,14 @@ struct SurfaceVariationOptions {
 ///
 /// - Nearest: the `neighbors` nearest vertices, by a kd-tree. Follows the surface however the mesh is cut.
 /// - Diffusion: no search; the first and second moments of the positions are averaged over the 1-ring
-///   neighbors / (mean degree + 1) times, which weighs the points around a vertex by a bell about as wide as their disk.
-///   Rank correlation with Nearest at 30: 0.93 to 0.98 on 12-nearest-neighbour clouds (2 passes); on meshes (4 passes)
-///   0.81 to 0.94, and below 0.6 where triangles are slivers.
+///   neighbors / (mean degree + 1) times, which weighs the points around a vertex by a bell about as wide as their
+///   disk. Rank correlation with Nearest at 30: 0.93 to 0.98 on 12-nearest-neighbour clouds (2 passes); on meshes (4
+///   passes) 0.81 to 0.94, and below 0.6 where triangles are slivers.
 /// Pre:   as SurfaceGraph promises.
 /// Post:  values in [0, 1/3]; 0 for an isolated vertex; unchanged by rigid motion and scale.
 /// Throws InvalidInput (option out of range), Cancelled.
-/// Cost:  Nearest O(n log n), about 2 us per vertex and 30 n bytes beyond the result; Diffusion O(passes x edges), about
+/// Cost:  Nearest O(n log n), about 2 us per vertex and 30 n bytes beyond the result; Diffusion O(passes x edges),
+/// about
 ///        0.4 us and 160 n bytes. Support: the neighbours, or `passes` rings.
 [[nodiscard]] std::vector<double> compute_surface_variation(const SurfaceGraph& graph,
                                                             const SurfaceVariationOptions& options = {},
