@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -39,7 +40,7 @@ Geometry organised(ScalarType coordinates) {
   g.attributes.set({"blue", std::vector<std::uint8_t>{7, 8, 9, 255}});
   g.attributes.set({"alpha", std::vector<std::uint8_t>{10, 11, 12, 255}});
   for (int t = 0; t < 10; ++t) {
-    Column column = make_column("a" + std::to_string(t), static_cast<ScalarType>(t), 4);
+    Column column = make_column(fmt::format("a{}", t), static_cast<ScalarType>(t), 4);
     std::visit(
         []<class T>(std::vector<T>& v) {
           v = {std::numeric_limits<T>::lowest(), std::numeric_limits<T>::max(), std::numeric_limits<T>::min(), T{}};

@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -27,7 +28,7 @@ Geometry rich_geometry(ScalarType coordinates) {
   g.positions = {{0.5, -0.0, 1.0}, {-0.1f, 3e-30f, 1e20f}, {0.0, 0.0, 0.0}};
   if (coordinates == ScalarType::Float64) g.positions[2] = {4320978.61, 0.1, 1e-300};
   for (int t = 0; t < 10; ++t) {
-    Column column = make_column("a" + std::to_string(t), static_cast<ScalarType>(t), 3);
+    Column column = make_column(fmt::format("a{}", t), static_cast<ScalarType>(t), 3);
     std::visit(
         []<class T>(std::vector<T>& v) {
           v = {std::numeric_limits<T>::lowest(), std::numeric_limits<T>::max(), std::numeric_limits<T>::min()};
