@@ -86,6 +86,14 @@ std::span<const FormatInfo> supported_formats() {
   return infos;
 }
 
+void check_writable_format(const std::filesystem::path& path) {
+  const Format* format = find_format(path);
+  if (format == nullptr || format->write == nullptr) {
+    throw InvalidInput(fmt::format("{}: cannot write this format, expected one of {}", path.string(),
+                                   names_of(&Format::write)));
+  }
+}
+
 Geometry read_geometry(const std::filesystem::path& path, const ReadOptions& options, const RunContext& context) {
   const io::MappedFile file(path);  // first: a missing file is that, whatever its name
   const Format* format = find_format(path);
@@ -107,11 +115,8 @@ Geometry read_geometry(const std::filesystem::path& path, const ReadOptions& opt
 
 std::vector<std::string> write_geometry(const std::filesystem::path& path, const Geometry& geometry,
                                         const WriteOptions& options, const RunContext& context) {
+  check_writable_format(path);
   const Format* format = find_format(path);
-  if (format == nullptr || format->write == nullptr) {
-    throw InvalidInput(fmt::format("{}: cannot write this format, expected one of {}", path.string(),
-                                   names_of(&Format::write)));
-  }
   io::OutputFile out(path, options.overwrite);
   std::vector<std::string> dropped = format->write(out, geometry, options);
   context.check();

@@ -11,14 +11,6 @@
 namespace shapelight::io {
 namespace {
 
-// For messages: a token may be binary garbage of any length.
-std::string printable(std::string_view token) {
-  std::string shown(token.substr(0, 32));
-  std::replace_if(
-      shown.begin(), shown.end(), [](unsigned char c) { return c < 32 || c > 126; }, '?');
-  return token.size() > 32 ? shown + "..." : shown;
-}
-
 // Microsoft's spellings of not-a-number and infinity: "1.#IND00", "-1.#QNAN", "1.#INF".
 std::optional<double> parse_special(std::string_view token) {
   const bool negative = token.starts_with('-');
@@ -35,6 +27,13 @@ std::optional<double> parse_special(std::string_view token) {
 }
 
 }  // namespace
+
+std::string printable(std::string_view token) {
+  std::string shown(token.substr(0, 32));
+  std::replace_if(
+      shown.begin(), shown.end(), [](unsigned char c) { return c < 32 || c > 126; }, '?');
+  return token.size() > 32 ? shown + "..." : shown;
+}
 
 std::optional<double> parse_double(std::string_view token) {
   if (token.starts_with('+')) token.remove_prefix(1);
@@ -60,16 +59,22 @@ std::optional<std::int64_t> parse_integer(std::string_view token) {
 
 std::optional<std::string_view> TextScanner::next_line() {
   if (position_ >= text_.size()) return std::nullopt;
-  std::size_t end = position_;
-  while (end < text_.size() && text_[end] != '\n' && text_[end] != '\r') ++end;
-  const std::string_view line = text_.substr(position_, end - position_);
-  position_ = end;
-  if (position_ < text_.size()) {
-    position_ += (text_[end] == '\r' && end + 1 < text_.size() && text_[end + 1] == '\n') ? 2 : 1;
-  }
+  if (newline_ < position_) newline_ = text_.find('\n', position_);
+  std::string_view line = text_.substr(position_, newline_ - position_);
+  line = line.substr(0, line.find('\r'));
+  position_ += line.size();
+  if (position_ < text_.size()) position_ += text_.substr(position_, 2) == "\r\n" ? 2 : 1;
   ++line_number_;
   rest_ = line;
   return line;
+}
+
+std::optional<std::string_view> TextScanner::next_data_line(char comment) {
+  while (const std::optional<std::string_view> line = next_line()) {
+    rest_ = line->substr(0, line->find(comment));
+    if (rest_.find_first_not_of(" \t") != std::string_view::npos) return rest_;
+  }
+  return std::nullopt;
 }
 
 std::string_view TextScanner::next_token(char separator) {
@@ -103,8 +108,8 @@ std::int64_t TextScanner::need_integer(std::string_view token, std::string_view 
   return *value;
 }
 
-void TextScanner::fail(std::string_view message) const {
-  throw FormatError(fmt::format("{}: {}: line {}: {}", format_, path_, line_number_, message));
+void TextScanner::fail_at(std::size_t line_number, std::string_view message) const {
+  throw FormatError(fmt::format("{}: {}: line {}: {}", format_, path_, line_number, message));
 }
 
 }  // namespace shapelight::io
