@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 #include <stdexcept>
 
 namespace shapelight {
@@ -43,32 +42,26 @@ void validate(const SurfaceGraph& graph) {
 }
 
 std::span<const Index> RingCollector::collect(Index center, int rings, std::size_t limit) {
-  found_.clear();
-  slots_.assign(std::bit_ceil(std::max<std::size_t>(64, 4 * limit)), kNoIndex);
-  insert(center);
-  std::size_t ring_begin = 0;
-  for (int ring = 0; ring < rings && found_.size() < limit; ++ring) {
-    const std::size_t ring_end = found_.size();
-    for (std::size_t k = ring_begin; k < ring_end; ++k) {
+  // Every visit writes its vertex behind the last one found and moves on only if it is new: no branch to mispredict.
+  if (found_.size() < limit + 1) found_.resize(limit + 1);
+  found_[0] = center;
+  met_[center] = 1;
+  std::size_t count = 1, ring_begin = 0;
+  for (int ring = 0; ring < rings && count < limit; ++ring) {
+    const std::size_t ring_end = count;
+    for (std::size_t k = ring_begin; k < ring_end && count < limit; ++k) {
       for (const Index j : graph_->neighbors_of(found_[k])) {
-        if (insert(j) && found_.size() == limit) return found_;
+        found_[count] = j;
+        count += 1U - met_[j];
+        met_[j] = 1;
+        if (count == limit) break;
       }
     }
     ring_begin = ring_end;
   }
-  return found_;
-}
-
-bool RingCollector::insert(Index vertex) {
-  const std::size_t mask = slots_.size() - 1;
-  std::size_t slot = (vertex * 0x9e3779b1U) & mask;
-  while (slots_[slot] != kNoIndex) {
-    if (slots_[slot] == vertex) return false;
-    slot = (slot + 1) & mask;
-  }
-  slots_[slot] = vertex;
-  found_.push_back(vertex);
-  return true;
+  const std::span<const Index> found(found_.data(), count);
+  for (const Index j : found) met_[j] = 0;
+  return found;
 }
 
 }  // namespace shapelight

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "io/text_columns.hpp"
+#include "io/narrow_columns.hpp"
 
 /// What the text formats of range images share: blocks of one number per pixel, row by row.
 namespace shapelight::io {

@@ -6,7 +6,7 @@
 #include <csetjmp>
 #include <cstring>
 
-#include "io/text_columns.hpp"
+#include "io/narrow_columns.hpp"
 #include "shapelight/core/error.hpp"
 
 /// 16-bit grey PNG images of a depth camera. A pixel of value 0 saw nothing; the others give, row by row, the point

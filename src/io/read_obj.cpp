@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <set>
 
-#include "io/text_columns.hpp"
+#include "io/narrow_columns.hpp"
 
 /// Wavefront OBJ: point i is the i-th `v` line. Normals become columns when every vertex has exactly one; texture
 /// coordinates stay with the corners. Materials, groups, curves and the rest are counted and left out.

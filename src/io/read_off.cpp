@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "io/text_columns.hpp"
+#include "io/narrow_columns.hpp"
 
 /// OFF with the prefixes N (normals), C (colours) and ST (texture coordinates, columns s and t) of Geomview. One
 /// vertex and one face a line; comments anywhere. The colours of faces are left out.

@@ -2,7 +2,7 @@
 
 #include <Eigen/Geometry>
 
-#include "io/text_columns.hpp"
+#include "io/narrow_columns.hpp"
 
 /// Leica PTX: scans of a terrestrial scanner, column by column, each with its matrix. All scans are brought into the
 /// common frame by their matrices. Pixels at (0, 0, 0) saw nothing and give no point.

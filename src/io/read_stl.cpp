@@ -4,7 +4,7 @@
 #include <cstring>
 
 #include "io/point_welder.hpp"
-#include "io/text_columns.hpp"
+#include "io/narrow_columns.hpp"
 
 /// STL, binary and ascii. It lists corners, not vertices: corners with exactly the same coordinates become one point,
 /// and points are in the order of their first appearance. Facet normals follow from the corners and are not kept.

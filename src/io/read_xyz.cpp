@@ -4,7 +4,7 @@
 #include <cmath>
 #include <map>
 
-#include "io/text_columns.hpp"
+#include "io/narrow_columns.hpp"
 
 /// Points as columns of text: .xyz .txt .csv .pts .asc. The separator, a line of column names and the count that
 /// begins a .pts file are recognised; without names the meaning of the columns follows from their number.

@@ -3,82 +3,138 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <limits>
 
-#include "shapelight/core/error.hpp"
+#include "io/scalar_bytes.hpp"
 
 namespace shapelight::io {
 namespace {
 
-bool is_float(double value) {
-  if (!std::isfinite(value)) return true;
-  return std::abs(value) <= std::numeric_limits<float>::max() &&
-         static_cast<double>(static_cast<float>(value)) == value;
+// The next wider signed type, which holds every value of the narrower ones; Int64 is the last.
+ScalarType wider(ScalarType type) {
+  switch (scalar_type_size(type)) {
+    case 1: return ScalarType::Int16;
+    case 2: return ScalarType::Int32;
+    default: return ScalarType::Int64;
+  }
 }
 
-bool is_byte(double value) { return value >= 0.0 && value <= 255.0 && value == std::floor(value); }
-
-template <class T>
-Column convert(std::string name, const std::vector<double>& values) {
-  std::vector<T> converted(values.size());
-  std::transform(values.begin(), values.end(), converted.begin(), [](double v) { return static_cast<T>(v); });
-  return {std::move(name), std::move(converted)};
+Column converted(const Column& column, ScalarType type) {
+  Column result = make_column(column.name, type, column.size());
+  std::visit(
+      [&](const auto& from) {
+        std::visit(
+            [&]<class To>(std::vector<To>& to) {
+              std::transform(from.begin(), from.end(), to.begin(), [](auto v) { return static_cast<To>(v); });
+            },
+            result.values);
+      },
+      column.values);
+  return result;
 }
+
+bool is_exact_in_float32(ScalarType type) { return type == ScalarType::Float32 || scalar_type_size(type) <= 2; }
 
 }  // namespace
 
-void fail_format(const Source& source, std::string_view format, std::string_view message) {
-  throw FormatError(fmt::format("{}: {}: {}", format, source.path.string(), message));
+bool float32_keeps(std::string_view token, double value) {
+  const double loss = std::abs(static_cast<double>(static_cast<float>(value)) - value);
+  if (!(loss > 0.0)) return true;  // exact, or not finite
+  const std::size_t e = std::min(token.find_first_of("eE"), token.size());
+  const std::size_t point = std::min(token.find('.'), e);
+  const double decimals = point < e ? static_cast<double>(e - point - 1) : 0.0;
+  const double exponent = e < token.size() ? parse_double(token.substr(e + 1)).value_or(0.0) : 0.0;
+  return loss <= 0.500001 * std::pow(10.0, exponent - decimals);
 }
 
-TextScanner open_text(const Source& source, std::string format) {
-  std::string_view text = source.file.text();
-  if (text.empty()) fail_format(source, format, "the file is empty, expected text");
-  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
-  const bool big = text.starts_with("\xFE\xFF") || text.starts_with(std::string_view("\0\0\xFE\xFF", 4));
-  if (big || text.starts_with("\xFF\xFE")) {
-    fail_format(source, format, "byte 0: the text is UTF-16 or UTF-32 encoded, expected ASCII or UTF-8");
+TextColumn::TextColumn(std::string name, ScalarType type, std::size_t expected, bool wide_floats)
+    : declared_(type), keeps_float32_(wide_floats && type == ScalarType::Float32) {
+  column_ = make_column(std::move(name), keeps_float32_ ? ScalarType::Float64 : type);
+  std::visit([&](auto& v) { v.reserve(expected); }, column_.values);
+}
+
+template <class T>
+bool TextColumn::append_integer(std::vector<T>& values, std::string_view token) {
+  if (token.starts_with('+')) token.remove_prefix(1);
+  T value{};
+  const auto [end, error] = std::from_chars(token.data(), token.data() + token.size(), value);
+  if (error != std::errc() || end != token.data() + token.size()) {
+    const std::optional<double> real = parse_double(token);  // "12.0", which some writers leave in integer columns
+    if (!real || *real != std::floor(*real) || std::abs(*real) > 9e15) return false;
+    if (*real < static_cast<double>(std::numeric_limits<T>::lowest()) ||
+        *real > static_cast<double>(std::numeric_limits<T>::max())) {
+      return false;
+    }
+    value = static_cast<T>(*real);
   }
-  return {text, std::move(format), source.path.string()};
+  values.push_back(value);
+  return true;
 }
 
-ScalarType narrowest_float(std::span<const double> values) {
-  return std::all_of(values.begin(), values.end(), is_float) ? ScalarType::Float32 : ScalarType::Float64;
+void TextColumn::widen() {
+  const std::size_t capacity = std::visit([](const auto& v) { return v.capacity(); }, column_.values);
+  column_ = converted(column_, wider(column_.type()));
+  std::visit([&](auto& v) { v.reserve(capacity); }, column_.values);
 }
 
-ScalarType narrowest_float(std::span<const Vec3> positions) {
-  const bool exact = std::all_of(positions.begin(), positions.end(),
-                                 [](const Vec3& p) { return is_float(p.x()) && is_float(p.y()) && is_float(p.z()); });
-  return exact ? ScalarType::Float32 : ScalarType::Float64;
-}
-
-Column float_column(std::string name, std::vector<double> values) {
-  if (narrowest_float(values) == ScalarType::Float32) return convert<float>(std::move(name), values);
-  return {std::move(name), std::move(values)};
-}
-
-void set_colors(AttributeTable& table, std::span<const std::string_view> names,
-                std::vector<std::vector<double>> values) {
-  const bool bytes = std::all_of(values.begin(), values.end(), [](const std::vector<double>& channel) {
-    return std::all_of(channel.begin(), channel.end(), is_byte);
-  });
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    std::string name(names[i]);
-    table.set(bytes ? convert<std::uint8_t>(std::move(name), values[i])
-                    : float_column(std::move(name), std::move(values[i])));
+void TextColumn::append(const TextScanner& scanner, std::string_view token) {
+  if (auto* doubles = std::get_if<std::vector<double>>(&column_.values)) {
+    const double value = scanner.need_double(token, column_.name);
+    if (keeps_float32_) keeps_float32_ = float32_keeps(token, value);
+    doubles->push_back(value);
+    return;
+  }
+  if (auto* floats = std::get_if<std::vector<float>>(&column_.values)) {
+    floats->push_back(static_cast<float>(scanner.need_double(token, column_.name)));
+    return;
+  }
+  for (;;) {
+    const bool appended = std::visit(
+        [&]<class T>(std::vector<T>& values) {
+          if constexpr (std::is_integral_v<T>) return append_integer(values, token);
+          return false;
+        },
+        column_.values);
+    if (appended) return;
+    const std::optional<double> real = parse_double(token);
+    if (scalar_type_size(column_.type()) == 8 || !real || *real != std::floor(*real)) {
+      (void)scanner.need_integer(token, column_.name);
+      scanner.fail(fmt::format("{} does not fit its type {}", column_.name, scalar_type_name(column_.type())));
+    }
+    widen();
   }
 }
 
-void warn_count(Geometry& geometry, std::size_t count, std::string_view what) {
-  if (count > 0) geometry.warnings.push_back(fmt::format("{} {}", count, what));
+Column TextColumn::finish(std::vector<std::string>& warnings) {
+  if (keeps_float32_) return converted(column_, ScalarType::Float32);
+  if (column_.type() != declared_) {
+    warnings.push_back(fmt::format("{} is declared {} but holds values that need {}; read as {}", column_.name,
+                                   scalar_type_name(declared_), scalar_type_name(column_.type()),
+                                   scalar_type_name(column_.type())));
+  }
+  return std::move(column_);
 }
 
-std::string lower_case(std::string_view text) {
-  std::string lowered(text);
-  std::transform(lowered.begin(), lowered.end(), lowered.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-  return lowered;
+bool take_positions(std::vector<Column>& columns, Geometry& geometry) {
+  static constexpr std::array<std::string_view, 3> kNames = {"x", "y", "z"};
+  geometry.coordinate_type = ScalarType::Float32;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto found =
+        std::find_if(columns.begin(), columns.end(), [&](const Column& c) { return c.name == kNames[axis]; });
+    if (found == columns.end()) return false;
+    if (!is_exact_in_float32(found->type())) geometry.coordinate_type = ScalarType::Float64;
+    geometry.positions.resize(found->size());
+    std::visit(
+        [&](const auto& values) {
+          for (std::size_t i = 0; i < values.size(); ++i) geometry.positions[i][axis] = static_cast<double>(values[i]);
+        },
+        found->values);
+    columns.erase(found);
+  }
+  return true;
 }
 
 }  // namespace shapelight::io

@@ -1,38 +1,40 @@
 #pragma once
 
-#include <span>
-#include <string>
 #include <string_view>
-#include <vector>
 
-#include "io/formats.hpp"
 #include "io/text_scanner.hpp"
+#include "shapelight/data/geometry.hpp"
 
-/// What the readers of text formats share: numbers in text have no type, so one is chosen that holds them exactly.
+/// Columns of numbers in text, and coordinates made of columns: what text and binary formats with named scalars share.
 namespace shapelight::io {
 
-/// Throws FormatError "format: path: message".
-[[noreturn]] void fail_format(const Source& source, std::string_view format, std::string_view message);
+/// True when a float32 prints as `token` does, to the token's last digit. False means that the text is more precise
+/// than the float32 that a header may have declared for it, as with UTM coordinates. Pre: value is that of the token.
+[[nodiscard]] bool float32_keeps(std::string_view token, double value);
 
-/// A scanner over the file's text, behind a UTF-8 mark if there is one. Throws FormatError on an empty file and on
-/// UTF-16 and UTF-32 text, which are named in the message.
-[[nodiscard]] TextScanner open_text(const Source& source, std::string format);
+/// A column that grows by tokens. An integer outside the declared type widens the column to the next signed type
+/// (int8 to int16, ... int64); wide_floats reads float32 as float64 until finish() knows that float32 was enough.
+class TextColumn {
+ public:
+  TextColumn(std::string name, ScalarType type, std::size_t expected, bool wide_floats = false);
 
-/// Float32 when every number is exactly a float (or not a number), else Float64.
-[[nodiscard]] ScalarType narrowest_float(std::span<const double> values);
-[[nodiscard]] ScalarType narrowest_float(std::span<const Vec3> positions);
+  /// Throws FormatError, through the scanner, when the token is no such number.
+  void append(const TextScanner& scanner, std::string_view token);
+  /// The column; adds to `warnings` when it is wider than declared.
+  [[nodiscard]] Column finish(std::vector<std::string>& warnings);
 
-/// A column of the narrowest floating-point type.
-[[nodiscard]] Column float_column(std::string name, std::vector<double> values);
+ private:
+  template <class T>
+  bool append_integer(std::vector<T>& values, std::string_view token);
+  void widen();
 
-/// Adds `names` (of one colour) as uint8 columns when all values are integers within 0 .. 255, else as float columns.
-void set_colors(AttributeTable& table, std::span<const std::string_view> names,
-                std::vector<std::vector<double>> values);
+  Column column_;
+  ScalarType declared_;
+  bool keeps_float32_;
+};
 
-/// Turns "3 polygons with more than 3 corners were cut into triangles" and its like into a warning when `count` > 0.
-void warn_count(Geometry& geometry, std::size_t count, std::string_view what);
-
-/// ASCII only, which is all that keywords and column names need.
-[[nodiscard]] std::string lower_case(std::string_view text);
+/// Moves the columns x, y, z out of `columns` into the geometry's positions. coordinate_type becomes Float32 when all
+/// three fit float32 exactly (float32, or integers of at most 16 bits), else Float64. False when one is missing.
+bool take_positions(std::vector<Column>& columns, Geometry& geometry);
 
 }  // namespace shapelight::io

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <stdexcept>
 #include <string>
 
@@ -39,7 +40,12 @@ class FormatError : public Error {
 /// What was asked for cannot be reached; the message says how far it got (exit code 5).
 class TargetUnreachable : public Error {
  public:
-  explicit TargetUnreachable(const std::string& what) : Error(5, what) {}
+  TargetUnreachable(const std::string& what, std::uint64_t reachable) : Error(5, what), reachable_(reachable) {}
+  /// The most that can be reached, in the unit of the target.
+  [[nodiscard]] std::uint64_t reachable() const noexcept { return reachable_; }
+
+ private:
+  std::uint64_t reachable_;
 };
 
 /// The memory budget would be exceeded; thrown before work starts (exit code 7).

@@ -18,7 +18,7 @@ namespace shapelight {
 struct SurfaceGraph {
   std::vector<std::uint32_t> offsets;     ///< n + 1
   std::vector<Index> neighbors;           ///< m
-  std::vector<float> weight;              ///< m: [area] surface that the edge stands for; sums to about 3 area per vertex
+  std::vector<float> weight;              ///< m: [area] of the triangles at the edge; sums to 6 x area over a vertex's edges
   std::vector<Vec3> position;             ///< n: relative to `origin`, [input length unit]
   std::vector<Vec3> normal;               ///< n: unit, consistently oriented; zero where undefined
   std::vector<double> area;               ///< n: [input length unit squared] surface that the vertex stands for
@@ -51,20 +51,19 @@ struct GraphDiagnostics {
 /// Checks every invariant of the graph; throws std::logic_error that names the first broken one. For tests.
 void validate(const SurfaceGraph& graph);
 
-/// Rings around a vertex by breadth-first search. One instance per chunk of work; buffers are reused between calls.
+/// Rings around a vertex by breadth-first search. One instance per chunk of work, which should hold graph.size() / 256
+/// vertices or more; buffers are reused between calls. Holds one byte per vertex of the graph.
 class RingCollector {
  public:
-  explicit RingCollector(const SurfaceGraph& graph) : graph_(&graph) {}
+  explicit RingCollector(const SurfaceGraph& graph) : graph_(&graph), met_(graph.size(), 0) {}
   /// Vertices within `rings` steps of `center`, itself first, then ring by ring, each ring in the order of discovery
   /// (neighbours ascending); at most `limit` in all. The span is valid until the next call. Cost: their degrees.
   std::span<const Index> collect(Index center, int rings, std::size_t limit);
 
  private:
-  bool insert(Index vertex);  // false when already met in this call
-
   const SurfaceGraph* graph_;
   std::vector<Index> found_;
-  std::vector<Index> slots_;  // open addressing, kNoIndex when free
+  std::vector<std::uint8_t> met_;  // 1 for the vertices of found_ during a call
 };
 
 }  // namespace shapelight

@@ -37,6 +37,9 @@ struct FormatInfo {
 };
 [[nodiscard]] std::span<const FormatInfo> supported_formats();
 
+/// Throws InvalidInput when no writer fits the path's extension; names the extensions that have one.
+void check_writable_format(const std::filesystem::path& path);
+
 /// Reads a mesh, range image or point cloud; the format is chosen by extension (case-insensitive).
 /// The file is memory-mapped, and every count is checked against the bytes that are there before memory is allocated.
 /// Throws ReadError (missing, unreadable), FormatError (malformed or unsupported; names line, byte, element or index,

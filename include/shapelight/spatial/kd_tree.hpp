@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -20,7 +21,8 @@ struct Neighbor {
 
 /// Static kd-tree over points; exact queries in double precision.
 /// Pre: points finite. Queries are const and safe from any number of threads. Answers are sorted by (distance, index),
-/// so ties do not depend on the shape of the tree. Keeps its own copy of the points: 28 bytes per point and nodes.
+/// so ties do not depend on the shape of the tree. Keeps its own copy of the points.
+/// Cost: building O(n log n), a query O(k + log n); about 45 bytes per point.
 class KdTree {
  public:
   explicit KdTree(std::span<const Vec3> points);
@@ -33,13 +35,21 @@ class KdTree {
   /// All points with distance <= radius, ascending.
   void within(const Vec3& query, double radius, std::vector<Neighbor>& found) const;
 
+  /// For every point the k nearest others (not itself), nearest first: size() x k indices, kNoIndex where there are
+  /// fewer. Several times faster than size() single queries: it walks the points leaf by leaf, from the bottom up.
+  [[nodiscard]] std::vector<Index> all_nearest(std::size_t k, const RunContext& context = {}) const;
+
  private:
   struct Node {
-    Vec3 min, max;             // box of the points below
-    std::uint32_t begin, end;  // slots
-    std::uint32_t right;       // index of the right child, 0 in a leaf; the left child follows its parent
+    std::array<double, 3> min, max;  // box of the points below
+    std::uint32_t begin, end;        // slots
+    std::uint32_t right;             // the right child, 0 in a leaf; the left child follows its parent
+    std::uint32_t parent;
   };
-  std::uint32_t build(std::uint32_t begin, std::uint32_t end, std::span<const Vec3> points);
+  class Candidates;
+  std::uint32_t build(std::uint32_t begin, std::uint32_t end, std::uint32_t parent, std::span<const Vec3> points);
+  void search(std::uint32_t node, const std::array<double, 3>& query, Candidates& found) const;
+  void scan(const Node& leaf, const std::array<double, 3>& query, Candidates& found) const;
 
   std::vector<Node> nodes_;
   std::vector<double> x_, y_, z_;  // coordinates in slot order

@@ -1,0 +1,18 @@
+#include "graph/components.hpp"
+
+namespace shapelight {
+
+std::vector<Index> component_roots(const SurfaceGraph& graph) {
+  SignedUnionFind sets(graph.size());
+  for (Index i = 0; i < graph.size(); ++i) {
+    for (const Index j : graph.neighbors_of(i)) {
+      if (j > i) break;
+      sets.unite(i, j);
+    }
+  }
+  std::vector<Index> root(graph.size());
+  for (Index i = 0; i < graph.size(); ++i) root[i] = sets.find(i).first;
+  return root;
+}
+
+}  // namespace shapelight

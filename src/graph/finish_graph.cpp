@@ -1,0 +1,74 @@
+#include "graph/finish_graph.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/parallel.hpp"
+#include "graph/components.hpp"
+
+namespace shapelight {
+namespace {
+
+constexpr double kFlat = 0.01;  // share of |n . (p - c)| that must agree on a side for the shape to decide
+
+struct ComponentSide {
+  Vec3 center = Vec3::Zero();
+  double area = 0.0;
+  double outward = 0.0;    // sum of area n . (p - c), or towards the viewpoint
+  double magnitude = 0.0;  // sum of area |p - c|
+  double up = 0.0;         // sum of area n_z
+};
+
+}  // namespace
+
+void finish_graph(BuiltGraph& built, const RunContext& context) {
+  SurfaceGraph& graph = built.graph;
+  const std::size_t n = graph.size();
+  const double length_sum = parallel::sum(context, n, [&](std::size_t i) {
+    double sum = 0.0;
+    for (const Index j : graph.neighbors_of(i)) sum += (graph.position[j] - graph.position[i]).norm();
+    return sum;
+  });
+  graph.mean_edge_length = graph.neighbors.empty() ? 0.0 : length_sum / static_cast<double>(graph.neighbors.size());
+  graph.total_area = parallel::sum(context, n, [&](std::size_t i) { return graph.area[i]; });
+
+  GraphDiagnostics& counts = built.diagnostics;
+  const std::vector<Index> root = component_roots(graph);
+  for (std::size_t i = 0; i < n; ++i) {
+    if (graph.neighbors_of(i).empty()) {
+      graph.outlier[i] = 1;
+      ++counts.isolated_vertices;
+    } else if (root[i] == i) {
+      ++counts.components;
+    }
+    counts.outliers += graph.outlier[i];
+    counts.boundary_vertices += graph.boundary[i];
+  }
+}
+
+void orient_components(SurfaceGraph& graph, const std::optional<Vec3>& viewpoint) {
+  const std::size_t n = graph.size();
+  const std::vector<Index> root = component_roots(graph);
+  std::vector<ComponentSide> sides(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    ComponentSide& side = sides[root[i]];
+    side.center += graph.area[i] * graph.position[i];
+    side.area += graph.area[i];
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    ComponentSide& side = sides[root[i]];
+    const Vec3 center = viewpoint ? Vec3(*viewpoint - graph.origin) : Vec3(side.center / std::max(side.area, 1e-300));
+    Vec3 outward = graph.position[i] - center;
+    if (viewpoint) outward = -outward.normalized();
+    side.outward += graph.area[i] * graph.normal[i].dot(outward);
+    side.magnitude += graph.area[i] * outward.norm();
+    side.up += graph.area[i] * graph.normal[i].z();
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    const ComponentSide& side = sides[root[i]];
+    const bool shape_decides = std::abs(side.outward) > kFlat * side.magnitude;
+    if ((shape_decides ? side.outward : side.up) < 0.0) graph.normal[i] = -graph.normal[i];
+  }
+}
+
+}  // namespace shapelight

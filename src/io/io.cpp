@@ -1,0 +1,127 @@
+#include "shapelight/io/io.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+
+#include "io/formats.hpp"
+#include "shapelight/core/error.hpp"
+
+namespace shapelight {
+namespace {
+
+using Reader = Geometry (*)(const io::Source&);
+using Writer = io::DroppedAttributes (*)(io::OutputFile&, const Geometry&, const WriteOptions&);
+
+struct Format {
+  std::string_view name;
+  std::vector<std::string_view> extensions;
+  std::string_view description;
+  Reader read;
+  Writer write;
+};
+
+// In the order in which they are listed to people.
+const std::vector<Format>& formats() {
+  static const std::vector<Format> table = {
+      {"ply", {".ply"}, "Polygon File Format: meshes, clouds and Stanford range images", io::read_ply, io::write_ply},
+      {"obj", {".obj"}, "Wavefront OBJ meshes", io::read_obj, io::write_obj},
+      {"stl", {".stl"}, "Stereolithography meshes", io::read_stl, io::write_stl},
+      {"off", {".off"}, "Object File Format meshes", io::read_off, io::write_off},
+      {"pcd", {".pcd"}, "Point Cloud Library clouds and organised clouds", io::read_pcd, io::write_pcd},
+      {"xyz", {".xyz", ".txt", ".csv", ".pts", ".asc"}, "clouds as text, one point per line", io::read_xyz, io::write_xyz},
+      {"ptx", {".ptx"}, "terrestrial laser scans as text", io::read_ptx, nullptr},
+      {"las", {".las"}, "ASPRS laser clouds, versions 1.0 to 1.4", io::read_las, io::write_las},
+      {"png", {".png"}, "16-bit depth images with camera intrinsics", io::read_depth_png, nullptr},
+      {"osu", {".abs"}, "Ohio State University range images as text", io::read_osu, nullptr},
+      {"rif", {".rif"}, "RIF range images as text", io::read_rif, nullptr},
+      {"laz", {".laz"}, "compressed LAS and COPC (.copc.laz), read by the Python package", nullptr, nullptr},
+      {"e57", {".e57"}, "ASTM E57 scans, read by the Python package", nullptr, nullptr},
+  };
+  return table;
+}
+
+const Format* find_format(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  for (const Format& format : formats()) {
+    const auto& known = format.extensions;
+    if (std::find(known.begin(), known.end(), extension) != known.end()) return &format;
+  }
+  return nullptr;
+}
+
+// "ply obj stl ..." of the formats that can be read or written.
+template <class Member>
+std::string names_of(Member Format::*function) {
+  std::string names;
+  for (const Format& format : formats()) {
+    if (format.*function == nullptr) continue;
+    for (const std::string_view extension : format.extensions) names += fmt::format("{}{}", names.empty() ? "" : " ", extension);
+  }
+  return names;
+}
+
+// A geometry without a single finite point is of no use to anybody, whatever its format.
+void check_contents(const Geometry& geometry, const Format& format, const std::filesystem::path& path) {
+  const auto& points = geometry.positions;
+  if (std::any_of(points.begin(), points.end(), [](const Vec3& p) { return p.allFinite(); })) return;
+  throw FormatError(fmt::format("{}: {}: {} points and none of them finite, expected at least one", format.name,
+                                path.string(), points.size()));
+}
+
+}  // namespace
+
+std::span<const FormatInfo> supported_formats() {
+  static const std::vector<FormatInfo> infos = [] {
+    std::vector<FormatInfo> list;
+    for (const Format& f : formats()) {
+      list.push_back({f.name, f.extensions, f.description, f.read != nullptr, f.write != nullptr});
+    }
+    return list;
+  }();
+  return infos;
+}
+
+void check_writable_format(const std::filesystem::path& path) {
+  const Format* format = find_format(path);
+  if (format == nullptr || format->write == nullptr) {
+    throw InvalidInput(fmt::format("{}: cannot write this format, expected one of {}", path.string(),
+                                   names_of(&Format::write)));
+  }
+}
+
+Geometry read_geometry(const std::filesystem::path& path, const ReadOptions& options, const RunContext& context) {
+  const io::MappedFile file(path);  // first: a missing file is that, whatever its name
+  const Format* format = find_format(path);
+  if (format == nullptr) {
+    throw FormatError(fmt::format("{}: unknown extension '{}', expected one of {}", path.string(),
+                                  path.extension().string(), names_of(&Format::read)));
+  }
+  if (format->read == nullptr) {
+    throw FormatError(fmt::format(
+        "{}: {} files are read by the Python package, whose shapelight command takes them: pip install shapelight[{}]",
+        path.string(), format->name, format->name));
+  }
+  context.check();
+  Geometry geometry = format->read({file, path, options, context});
+  geometry.format = format->name;
+  check_contents(geometry, *format, path);
+  return geometry;
+}
+
+std::vector<std::string> write_geometry(const std::filesystem::path& path, const Geometry& geometry,
+                                        const WriteOptions& options, const RunContext& context) {
+  check_writable_format(path);
+  const Format* format = find_format(path);
+  io::OutputFile out(path, options.overwrite);
+  std::vector<std::string> dropped = format->write(out, geometry, options);
+  context.check();
+  out.commit();
+  return dropped;
+}
+
+}  // namespace shapelight
