@@ -131,8 +131,7 @@ PcdHeader read_pcd_header(TextScanner& scanner) {
     if (!line) scanner.fail("the file ends within its header, expected DATA");
     if (line->starts_with('#')) {
       if (line->find("Point Cloud Data file format") == std::string_view::npos) {
-        const std::size_t text = line->find_first_not_of("# \t");
-        header.comments.emplace_back(text == std::string_view::npos ? "" : line->substr(text));
+        header.comments.emplace_back(line->substr(line->starts_with("# ") ? 2 : 1));
       }
       continue;
     }

@@ -197,11 +197,21 @@ TEST(Ply, WriterReportsWhatItCannotHold) {
   g.positions = {{1, 2, 3}};
   g.attributes.set({"x", std::vector<float>{1}});
   g.attributes.set({"two words", std::vector<float>{4}});
+  g.attributes.set({"two\twords", std::vector<float>{5}});
   g.comments = {"two\nlines"};
-  EXPECT_EQ(write_geometry(folder.file("a.ply"), g), std::vector<std::string>{"x"});
+  EXPECT_EQ(write_geometry(folder.file("a.ply"), g), (std::vector<std::string>{"x", "two\twords"}));
   const Geometry back = read_geometry(folder.file("a.ply"));
   EXPECT_EQ(back.attributes.find("two_words")->as_double(0), 4.0);
   EXPECT_EQ(back.comments, std::vector<std::string>{"two lines"});
+}
+
+TEST(Ply, CommentsAreNotTakenForGridOrViewpoint) {
+  const TempFolder folder;
+  Geometry g;
+  g.positions = {{1, 2, 3}};
+  g.comments = {"obj_info num_cols none", "obj_info viewpoint unknown"};
+  (void)write_geometry(folder.file("a.ply"), g);
+  expect_same(g, read_geometry(folder.file("a.ply")));
 }
 
 struct BadPly {
