@@ -76,7 +76,8 @@ char type_letter(ScalarType type) {
   return scalar_type_name(type).starts_with('u') ? 'U' : 'I';
 }
 
-std::vector<const Column*> fields_of(const Geometry& g, const std::optional<Column>& color, DroppedAttributes& dropped) {
+std::vector<const Column*> fields_of(const Geometry& g, const std::optional<Column>& color,
+                                     DroppedAttributes& dropped) {
   static constexpr std::array<std::string_view, 4> kPacked = {"red", "green", "blue", "alpha"};
   std::set<std::string> names = {"x", "y", "z", "X", "Y", "Z"};  // the reader takes capitals for coordinates, too
   std::vector<const Column*> fields;
@@ -145,9 +146,8 @@ void put_point(std::string& buffer, const Geometry& g, const std::vector<const C
     }
   }
   for (const Column* field : fields) {
-    std::visit(
-        [&]<class T>(const std::vector<T>& values) { put(buffer, i == kNoIndex ? T{} : values[i], ascii); },
-        field->values);
+    std::visit([&]<class T>(const std::vector<T>& values) { put(buffer, i == kNoIndex ? T{} : values[i], ascii); },
+               field->values);
   }
   if (ascii) buffer.back() = '\n';
 }

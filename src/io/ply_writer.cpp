@@ -15,15 +15,24 @@ constexpr std::size_t kFlushBytes = std::size_t{1} << 20;
 // The names that all readers know; 64-bit integers are an extension that several of them share.
 std::string_view ply_type_name(ScalarType type) {
   switch (type) {
-    case ScalarType::Int8: return "char";
-    case ScalarType::UInt8: return "uchar";
-    case ScalarType::Int16: return "short";
-    case ScalarType::UInt16: return "ushort";
-    case ScalarType::Int32: return "int";
-    case ScalarType::UInt32: return "uint";
-    case ScalarType::Float32: return "float";
-    case ScalarType::Float64: return "double";
-    default: return scalar_type_name(type);
+    case ScalarType::Int8:
+      return "char";
+    case ScalarType::UInt8:
+      return "uchar";
+    case ScalarType::Int16:
+      return "short";
+    case ScalarType::UInt16:
+      return "ushort";
+    case ScalarType::Int32:
+      return "int";
+    case ScalarType::UInt32:
+      return "uint";
+    case ScalarType::Float32:
+      return "float";
+    case ScalarType::Float64:
+      return "double";
+    default:
+      return scalar_type_name(type);
   }
 }
 

@@ -49,7 +49,8 @@ TEST(Io, FormatsOfThePythonPackageAreNamed) {
 
 TEST(Io, UnknownExtensions) {
   const TempFolder folder;
-  EXPECT_NE(test::refusal(folder.file("a.doc", "x")).find("unknown extension '.doc', expected one of .ply"), std::string::npos);
+  EXPECT_NE(test::refusal(folder.file("a.doc", "x")).find("unknown extension '.doc', expected one of .ply"),
+            std::string::npos);
   Geometry g;
   g.positions = {{0, 0, 0}};
   EXPECT_THROW((void)write_geometry(folder.file("a.ptx"), g), InvalidInput);

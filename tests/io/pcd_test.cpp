@@ -144,7 +144,11 @@ TEST(Pcd, FieldsOfSeveralValuesAndPadding) {
 TEST(Pcd, CompressedBytes) {
   const TempFolder folder;
   std::string text = header("x y z", "1 1 1", "U U U", "1 1 1", 6, 1, "binary_compressed");
-  const std::string stream = std::string("\x09" "ABCDEFGHIJ" "\xC0\x09", 13);  // 8 bytes, 10 back
+  const std::string stream = std::string(
+      "\x09"
+      "ABCDEFGHIJ"
+      "\xC0\x09",
+      13);  // 8 bytes, 10 back
   io::append_bytes(text, static_cast<std::uint32_t>(stream.size()));
   io::append_bytes(text, std::uint32_t{18});
   const Geometry g = read_geometry(folder.file("a.pcd", text + stream));
