@@ -42,32 +42,47 @@ Color to_gamut(Lab lab) {
 
 double distance(const Lab& a, const Lab& b) { return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]); }
 
-/// Walks the polyline through the control points at constant speed in OKLab.
-Table walk(const std::vector<Lab>& points) {
+/// Fills the entries first .. last by walking the polyline through the control points at constant speed in OKLab.
+void walk(const std::vector<Lab>& points, std::size_t first, std::size_t last, Table& table) {
   std::vector<double> arc = {0.0};
   for (std::size_t i = 1; i < points.size(); ++i) arc.push_back(arc.back() + distance(points[i - 1], points[i]));
-  Table table{};
   std::size_t segment = 1;
-  for (std::size_t k = 0; k < kTableSize; ++k) {
-    const double at = arc.back() * static_cast<double>(k) / (kTableSize - 1);
+  for (std::size_t k = first; k <= last; ++k) {
+    const double at = arc.back() * static_cast<double>(k - first) / static_cast<double>(last - first);
     while (segment + 1 < points.size() && arc[segment] < at) ++segment;
     const double u = std::clamp((at - arc[segment - 1]) / (arc[segment] - arc[segment - 1]), 0.0, 1.0);
     Lab lab;
     for (std::size_t c = 0; c < 3; ++c) lab[c] = (1.0 - u) * points[segment - 1][c] + u * points[segment][c];
     table[k] = to_gamut(lab);
   }
+}
+
+Table whole_walk(const std::vector<Lab>& points) {
+  Table table{};
+  walk(points, 0, kTableSize - 1, table);
+  return table;
+}
+
+/// Two walks away from the middle, which is thus the middle whatever the lengths of the arms.
+Table two_walks(const std::vector<Lab>& below, const std::vector<Lab>& above) {
+  Table table{};
+  walk(below, 0, kTableSize / 2, table);
+  walk(above, kTableSize / 2, kTableSize - 1, table);
   return table;
 }
 
 const Table& table_of(ColorMap map) {
-  static const Table sequential = walk({from_lch(0.26, 0.09, 305), from_lch(0.34, 0.12, 285), from_lch(0.43, 0.115, 258),
-                                        from_lch(0.53, 0.10, 225), from_lch(0.63, 0.105, 185), from_lch(0.73, 0.135, 153),
-                                        from_lch(0.82, 0.165, 125), from_lch(0.92, 0.17, 103)});
-  static const Table blue_yellow = walk({from_lch(0.25, 0.08, 262), from_lch(0.36, 0.075, 262), from_lch(0.55, 0.012, 262),
-                                         from_lch(0.74, 0.08, 95), from_lch(0.92, 0.15, 95)});
-  static const Table diverging = walk({from_lch(0.42, 0.13, 258), from_lch(0.62, 0.12, 248), from_lch(0.80, 0.07, 240),
-                                       from_lch(0.965, 0.004, 150), from_lch(0.80, 0.09, 62), from_lch(0.62, 0.15, 48),
-                                       from_lch(0.42, 0.13, 38)});
+  static const Table sequential = whole_walk({from_lch(0.26, 0.09, 305), from_lch(0.34, 0.12, 285),
+                                              from_lch(0.43, 0.115, 258), from_lch(0.53, 0.10, 225),
+                                              from_lch(0.63, 0.105, 185), from_lch(0.73, 0.135, 153),
+                                              from_lch(0.82, 0.165, 125), from_lch(0.92, 0.17, 103)});
+  static const Table blue_yellow =
+      whole_walk({from_lch(0.25, 0.08, 262), from_lch(0.36, 0.075, 262), from_lch(0.55, 0.012, 262),
+                  from_lch(0.74, 0.08, 95), from_lch(0.92, 0.15, 95)});
+  static const Lab middle = from_lch(0.965, 0.004, 150);
+  static const Table diverging =
+      two_walks({from_lch(0.42, 0.13, 258), from_lch(0.62, 0.12, 248), from_lch(0.80, 0.07, 240), middle},
+                {middle, from_lch(0.80, 0.09, 62), from_lch(0.62, 0.15, 48), from_lch(0.42, 0.13, 38)});
   switch (map) {
     case ColorMap::BlueYellow: return blue_yellow;
     case ColorMap::Diverging: return diverging;

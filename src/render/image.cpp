@@ -31,6 +31,10 @@ void write_png(const std::filesystem::path& path, const Image& image, bool overw
   out.commit();
 }
 
+void paste(Image& target, const Image& source, int left, int top) {
+  for (int y = 0; y < source.height; ++y) std::copy_n(&source.at(0, y), source.width, &target.at(left, top + y));
+}
+
 Image image_grid(std::span<const Image> images, int columns, int gap, Pixel background) {
   if (images.empty() || columns < 1 || gap < 0) {
     throw InvalidInput(fmt::format("image grid: {} images in {} columns with gap {}, expected >= 1, >= 1 and >= 0",
@@ -50,9 +54,7 @@ Image image_grid(std::span<const Image> images, int columns, int gap, Pixel back
     const Image& image = images[i];
     const int left = (i % columns) * (cell_width + gap) + (cell_width - image.width) / 2;
     const int top = (i / columns) * (cell_height + gap) + (cell_height - image.height) / 2;
-    for (int y = 0; y < image.height; ++y) {
-      std::copy_n(&image.at(0, y), image.width, &grid.at(left, top + y));
-    }
+    paste(grid, image, left, top);
   }
   return grid;
 }

@@ -175,7 +175,8 @@ void Rasterizer::draw_triangles(const Band& band) const {
 /// Normals and colours of what is seen, once per sample. A corner whose normal is far from the triangle's belongs to
 /// a crease: the triangle's own normal takes over there, which keeps machined edges sharp.
 void Rasterizer::resolve_triangles(const Band& band, const std::vector<Index>& seen) const {
-  constexpr float kSmooth = 0.91F, kCrease = 0.77F;  // cosines of about 25 and 40 degrees
+  constexpr float kSmooth = 0.87F, kCrease = 0.74F;  // cosines of about 30 and 42 degrees
+  const bool creases = surface_.own_triangles.empty();  // a range image is too noisy to have any
   for (std::size_t slot = 0; slot < seen.size(); ++slot) {
     if (seen[slot] == kNoIndex) continue;
     const Triangle& triangle = surface_.triangles[seen[slot]];
@@ -201,7 +202,7 @@ void Rasterizer::resolve_triangles(const Band& band, const std::vector<Index>& s
     for (int k = 0; k < 3; ++k) {
       Vec3f at_corner = rotation_ * surface_.normals[triangle[k]];
       if (at_corner.dot(face) < 0.0F) at_corner = -at_corner;
-      const float smooth = std::clamp((at_corner.dot(face) - kCrease) / (kSmooth - kCrease), 0.0F, 1.0F);
+      const float smooth = creases ? std::clamp((at_corner.dot(face) - kCrease) / (kSmooth - kCrease), 0.0F, 1.0F) : 1.0F;
       normal += weight[k] * (smooth * at_corner + (1.0F - smooth) * face);
       color += weight[k] / total * color_of(triangle[k]);
     }

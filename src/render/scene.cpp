@@ -106,19 +106,20 @@ Image render_scene(std::span<const RenderItem> items, const RenderOptions& optio
   for (const RenderItem& item : items) drawing::check_item(item);
   const Layout layout = make_layout(items, options);
   const std::vector<Camera> cameras = make_cameras(items, options, layout);
-  std::vector<Image> panels;
+  Image picture(options.width, options.height, options.background);
   for (std::size_t i = 0; i < items.size(); ++i) {
     const auto share = [&](std::size_t k) { return static_cast<double>(k) / static_cast<double>(items.size()); };
     const RunContext part = context.phase(share(i), share(i + 1), "render");
-    const Image drawing = drawing::draw_panel(items[i], cameras[i], layout.panel_width, layout.panel_height, options, part);
+    const Image shaded = drawing::draw_panel(items[i], cameras[i], layout.panel_width, layout.panel_height, options, part);
     Image panel(layout.panel_width, options.height / layout.rows, options.background);
-    std::copy(drawing.pixels.begin(), drawing.pixels.end(), panel.pixels.begin());
+    paste(panel, shaded, 0, 0);
     draw_centered(panel, items[i].title, 0.5 * panel.width, layout.panel_height + 1.6 * layout.text, layout.text,
                   0.94 * panel.width);
     if (has_bar(items[i])) draw_legend(panel, items[i].legend, layout.panel_height + layout.caption_height, layout.text);
-    panels.push_back(std::move(panel));
+    const int column = static_cast<int>(i) % layout.columns, row = static_cast<int>(i) / layout.columns;
+    paste(picture, panel, column * panel.width, row * panel.height);
   }
-  return image_grid(panels, layout.columns, 0, options.background);
+  return picture;
 }
 
 }  // namespace shapelight

@@ -127,9 +127,9 @@ Vec3f lit(const Fragment& fragment, float ambient) {
   const float direct = std::max(0.0F, normal.dot(key));
   const float head = std::max(0.0F, normal.z());
   const float sky = 0.5F + 0.5F * normal.y();
-  const float diffuse = 0.62F * direct * (0.35F + 0.65F * ambient) + (0.30F * head + 0.10F + 0.20F * sky) * ambient;
+  const float diffuse = 0.74F * direct * (0.35F + 0.65F * ambient) + (0.24F * head + 0.05F + 0.17F * sky) * ambient;
   const float gloss = std::pow(std::max(0.0F, normal.dot(half_way)), 28.0F);
-  return albedo * (1.08F * diffuse) + Vec3f::Constant(0.045F * gloss * ambient);
+  return albedo * (1.06F * diffuse) + Vec3f::Constant(0.05F * gloss * ambient);
 }
 
 /// Draws the dots that touch rows [first, first + rows) over those rows.
@@ -180,7 +180,7 @@ std::vector<float> ambient_light(const Frame& frame, const Camera& camera, int s
   for_pixels([&](int x, int y, std::size_t slot) {
     const auto& spiral = spirals[static_cast<std::size_t>((y % kPattern) * kPattern + x % kPattern)];
     const float hidden = hidden_share(blocks, x, y, reach, reach_pixels, spiral);
-    raw[slot] = std::max(0.0F, 1.0F - static_cast<float>(2.2 * strength) * hidden);
+    raw[slot] = std::max(0.0F, 1.0F - static_cast<float>(2.6 * strength) * hidden);
   });
   const float jump = 0.5F * reach / static_cast<float>(camera.distance);
   for_pixels([&](int x, int y, std::size_t slot) { ambient[slot] = blurred(blocks, raw, x, y, jump); });

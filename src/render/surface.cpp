@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/parallel.hpp"
@@ -143,9 +144,14 @@ std::vector<Triangle> triangulate_grid(const Geometry& geometry) {
 std::vector<Vec3f> triangle_normals(std::span<const Vec3> positions, std::span<const Triangle> triangles) {
   std::vector<Vec3> sums(positions.size(), Vec3::Zero());
   for (const Triangle& t : triangles) {
-    const Vec3 normal = (positions[t[1]] - positions[t[0]]).cross(positions[t[2]] - positions[t[0]]);
-    if (!normal.allFinite()) continue;
-    for (const Index i : t) sums[i] += normal;
+    const std::array<Vec3, 3> side = {positions[t[1]] - positions[t[0]], positions[t[2]] - positions[t[1]],
+                                      positions[t[0]] - positions[t[2]]};
+    const Vec3 normal = side[0].cross(side[1]);
+    const double twice_area = normal.norm();
+    if (!(twice_area > 0.0) || !std::isfinite(twice_area)) continue;
+    for (std::size_t k = 0; k < 3; ++k) {
+      sums[t[k]] += normal * (std::atan2(twice_area, -side[k].dot(side[(k + 2) % 3])) / twice_area);
+    }
   }
   std::vector<Vec3f> normals(positions.size());
   std::transform(sums.begin(), sums.end(), normals.begin(), unit_or_zero);

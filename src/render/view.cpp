@@ -24,11 +24,20 @@ constexpr std::array<double, 3> kFromAbove = {1.0, 0.3, 1.1};
 
 bool is_terrain(const Vec3& extent) { return extent.z() < 0.25 * std::min(extent.x(), extent.y()); }
 
+/// The sensor, unless it stands amid its points, as a spinning lidar does: that is no place to look from.
+/// An organised PCD whose header leaves the viewpoint at the origin was taken from there.
+std::optional<Vec3> outside_sensor(const Geometry& geometry, const BoundingBox& box) {
+  std::optional<Vec3> sensor = geometry.viewpoint;
+  if (!sensor && geometry.grid && geometry.format == "pcd") sensor = Vec3::Zero();
+  if (sensor && !((*sensor - box.center()).norm() > 0.35 * box.diagonal())) sensor.reset();
+  return sensor;
+}
+
 Orientation orientation_of(const Geometry& geometry, const BoundingBox& box) {
   const Vec3 y = Vec3::UnitY();
   const Vec3 z = Vec3::UnitZ();
-  if (geometry.viewpoint && geometry.grid) {
-    const Vec3 into = box.center() - *geometry.viewpoint;
+  if (const auto sensor = outside_sensor(geometry, box); sensor && geometry.grid) {
+    const Vec3 into = box.center() - *sensor;
     if (into.z() > 0.7 * into.norm()) return {-y, -z};
     if (into.z() < -0.7 * into.norm()) return {y, z};
     return {z, -y};
@@ -41,13 +50,8 @@ Orientation orientation_of(const Geometry& geometry, const BoundingBox& box) {
 }
 
 Vec3 automatic_eye(const Geometry& geometry, const BoundingBox& box, const Orientation& o) {
-  if (geometry.viewpoint) {
-    const Vec3 eye = *geometry.viewpoint - box.center();
-    // A sensor amid its points, as in a spinning lidar, is no place to look from.
-    if (eye.norm() > 0.35 * box.diagonal()) return eye;
-  } else if (geometry.grid && geometry.format != "ptx") {
-    return o.front;
-  }
+  if (const auto sensor = outside_sensor(geometry, box)) return *sensor - box.center();
+  if (geometry.grid && geometry.format != "ptx") return o.front;
   const auto& share = is_terrain(box.max - box.min) && o.up == Vec3::UnitZ() ? kFromAbove : kThreeQuarter;
   return share[0] * o.front + share[1] * o.right() + share[2] * o.up;
 }
@@ -91,6 +95,7 @@ View parse_view(std::string_view text, const Geometry& geometry) {
   const Vec3 eye = text == "auto" ? automatic_eye(geometry, box, o) : named ? *named : parse_eye(text);
   View view;
   view.direction = -eye.normalized();
+  if (text == "auto" && geometry.grid && outside_sensor(geometry, box)) view.distance = eye.norm();
   // Straight from above or below the front points down or up the picture.
   Vec3 up = o.up - o.up.dot(view.direction) * view.direction;
   if (up.norm() < 1e-6) up = view.direction.dot(o.up) < 0.0 ? Vec3(-o.front) : o.front;

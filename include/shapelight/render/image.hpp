@@ -31,6 +31,9 @@ struct Image {
 /// Throws InvalidInput (no pixels, or their number is not width x height), WriteError (exists and overwrite is off, ...).
 void write_png(const std::filesystem::path& path, const Image& image, bool overwrite = false);
 
+/// Copies `source` into `target` with its upper left pixel at (left, top). Pre: it fits.
+void paste(Image& target, const Image& source, int left, int top);
+
 /// Places images row by row in a grid of `columns`, each centred in a cell as large as the largest image.
 /// Throws InvalidInput when there is none, or columns < 1, or gap < 0.
 [[nodiscard]] Image image_grid(std::span<const Image> images, int columns, int gap, Pixel background);
