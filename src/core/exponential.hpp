@@ -12,7 +12,8 @@ namespace shapelight {
   const auto whole = static_cast<std::int32_t>(power - 0.5f);
   const float r = (power - static_cast<float>(whole)) * 0.69314718f;  // in [-0.35, 0.35]
   const float series =
-      1.0f + r * (1.0f + r * (0.5f + r * (1.66666667e-1f + r * (4.16666667e-2f + r * (8.33333333e-3f + r * 1.38888889e-3f)))));
+      1.0f +
+      r * (1.0f + r * (0.5f + r * (1.66666667e-1f + r * (4.16666667e-2f + r * (8.33333333e-3f + r * 1.38888889e-3f)))));
   return series * std::bit_cast<float>((whole + 127) << 23);
 }
 

@@ -1,9 +1,12 @@
 #include "core/parallel.hpp"
 
+#include <oneapi/tbb/global_control.h>
+#include <oneapi/tbb/info.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
 
 #include <atomic>
+#include <optional>
 
 namespace shapelight::parallel {
 
@@ -17,6 +20,11 @@ void run_chunks(const RunContext& context, std::size_t num_chunks, const std::fu
     return;
   }
   std::atomic<bool> stopped{false};
+  // More threads than cores are granted only under a control of their own; TBB complains on stderr otherwise.
+  std::optional<tbb::global_control> more_than_cores;
+  if (context.max_threads > tbb::info::default_concurrency()) {
+    more_than_cores.emplace(tbb::global_control::max_allowed_parallelism, context.max_threads);
+  }
   tbb::task_arena arena(context.max_threads > 0 ? context.max_threads : tbb::task_arena::automatic);
   arena.execute([&] {
     tbb::parallel_for(

@@ -8,6 +8,7 @@
 #include "core/statistics.hpp"
 #include "denoise/patch.hpp"
 #include "graph/field_checks.hpp"
+#include "graph/ring_chunk.hpp"
 
 namespace shapelight {
 namespace {
@@ -60,19 +61,23 @@ std::vector<double> non_local_means(const SurfaceGraph& graph, std::span<const d
   check_size(graph, direction1.size(), "direction1");
 
   const PatchNets nets = build_patch_nets(graph, field, direction1, context);
-  const float wanted = options.bandwidth_sq > 0.0 ? static_cast<float>(options.bandwidth_sq) : automatic_bandwidth_sq(graph, nets);
+  const float wanted =
+      options.bandwidth_sq > 0.0 ? static_cast<float>(options.bandwidth_sq) : automatic_bandwidth_sq(graph, nets);
   // Equal patches everywhere: any positive width gives them the weight 1.
   const float bandwidth_sq = std::max(wanted, std::numeric_limits<float>::min());
 
   std::vector<double> result(graph.size());
-  parallel::for_chunks(context, graph.size(), [&](std::size_t begin, std::size_t end) {
-    RingCollector rings(graph);
-    for (std::size_t i = begin; i < end; ++i) {
-      const auto candidates =
-          rings.collect(static_cast<Index>(i), options.window_rings, static_cast<std::size_t>(options.max_candidates) + 1);
-      result[i] = filtered_value(field, nets, candidates, bandwidth_sq);
-    }
-  });
+  parallel::for_chunks(
+      context, graph.size(),
+      [&](std::size_t begin, std::size_t end) {
+        RingCollector rings(graph);
+        for (std::size_t i = begin; i < end; ++i) {
+          const auto candidates = rings.collect(static_cast<Index>(i), options.window_rings,
+                                                static_cast<std::size_t>(options.max_candidates) + 1);
+          result[i] = filtered_value(field, nets, candidates, bandwidth_sq);
+        }
+      },
+      ring_chunk(graph));
   return result;
 }
 

@@ -4,6 +4,7 @@
 
 #include "core/parallel.hpp"
 #include "core/tangent_frame.hpp"
+#include "graph/ring_chunk.hpp"
 
 namespace shapelight {
 namespace {
@@ -31,7 +32,8 @@ struct PlanePoint {
 };
 
 TangentFrame patch_frame(const Vec3& normal, const Vec3& direction1) {
-  if (direction1.isZero(0.0)) return normal.isZero(0.0) ? TangentFrame{Vec3::UnitX(), Vec3::UnitY()} : tangent_frame(normal);
+  if (direction1.isZero(0.0))
+    return normal.isZero(0.0) ? TangentFrame{Vec3::UnitX(), Vec3::UnitY()} : tangent_frame(normal);
   return {direction1, normal.cross(direction1)};
 }
 
@@ -65,26 +67,31 @@ PatchNets build_patch_nets(const SurfaceGraph& graph, std::span<const double> fi
                            const RunContext& context) {
   PatchNets nets{std::vector<PatchNet>(graph.size()), std::vector<float>(graph.size())};
   const Array4f roots = root_weights();
-  parallel::for_chunks(context, graph.size(), [&](std::size_t begin, std::size_t end) {
-    RingCollector rings(graph);
-    std::vector<PlanePoint> points;
-    for (std::size_t i = begin; i < end; ++i) {
-      const TangentFrame frame = patch_frame(graph.normal[i], direction1[i]);
-      points.clear();
-      float sum = 0.0f, radius_sq = 0.0f;
-      for (const Index j : rings.collect(static_cast<Index>(i), 2, kMostPoints)) {
-        const Vec3 d = graph.position[j] - graph.position[i];
-        const PlanePoint p{static_cast<float>(d.dot(frame.x)), static_cast<float>(d.dot(frame.y)), static_cast<float>(field[j])};
-        sum += p.z;
-        radius_sq = std::max(radius_sq, p.x * p.x + p.y * p.y);
-        points.push_back(p);
-      }
-      approximate(points, sum / static_cast<float>(points.size()), std::sqrt(radius_sq), nets.net[i]);
-      float mean = 0.0f;
-      for (std::size_t m = 0; m < 16; ++m) mean += nets.net[i].value[m] * roots[static_cast<int>(m / 4)] * roots[static_cast<int>(m % 4)];
-      nets.mean[i] = mean;
-    }
-  });
+  parallel::for_chunks(
+      context, graph.size(),
+      [&](std::size_t begin, std::size_t end) {
+        RingCollector rings(graph);
+        std::vector<PlanePoint> points;
+        for (std::size_t i = begin; i < end; ++i) {
+          const TangentFrame frame = patch_frame(graph.normal[i], direction1[i]);
+          points.clear();
+          float sum = 0.0f, radius_sq = 0.0f;
+          for (const Index j : rings.collect(static_cast<Index>(i), 2, kMostPoints)) {
+            const Vec3 d = graph.position[j] - graph.position[i];
+            const PlanePoint p{static_cast<float>(d.dot(frame.x)), static_cast<float>(d.dot(frame.y)),
+                               static_cast<float>(field[j])};
+            sum += p.z;
+            radius_sq = std::max(radius_sq, p.x * p.x + p.y * p.y);
+            points.push_back(p);
+          }
+          approximate(points, sum / static_cast<float>(points.size()), std::sqrt(radius_sq), nets.net[i]);
+          float mean = 0.0f;
+          for (std::size_t m = 0; m < 16; ++m)
+            mean += nets.net[i].value[m] * roots[static_cast<int>(m / 4)] * roots[static_cast<int>(m % 4)];
+          nets.mean[i] = mean;
+        }
+      },
+      ring_chunk(graph));
   return nets;
 }
 

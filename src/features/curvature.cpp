@@ -1,59 +1,71 @@
 #include "shapelight/features/curvature.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
 #include "core/parallel.hpp"
 #include "core/tangent_frame.hpp"
 #include "features/local_fit.hpp"
+#include "graph/ring_chunk.hpp"
 
 namespace shapelight {
 namespace {
 
 bool has_normal(const SurfaceGraph& graph, std::size_t i) { return !graph.normal[i].isZero(0.0); }
 
-// Taubin's tensor in closed form. A tangent direction at angle t has t t' = (I + [[cos 2t, sin 2t], [sin 2t, -cos 2t]]) / 2,
-// so M = sum w k t t' has m1 + m2 = sum w k, and the tensor with k1 = 3 m1 - m2, k2 = 3 m2 - m1 is 4 M - (m1 + m2) I.
+// Share of the even-ring weight that keeps directions the ring does not see at no deviation.
+constexpr double kRidge = 0.02;
+
+// Euler's theorem: the normal curvature at angle t is mean + re cos 2t + im sin 2t; fitted to the edges by weighted
+// least squares. Over a ring with even directions the normal matrix is diag(1, 1/2, 1/2), and the solution is Taubin's
+// k1 = 3 m1 - m2, k2 = 3 m2 - m1 in closed form; over an uneven one Taubin's means are biased and this is not.
 TangentTensor taubin_tensor(const SurfaceGraph& graph, std::size_t i, const TangentFrame& frame) {
-  TangentTensor sum;
-  double total = 0.0;
+  Eigen::Matrix3d matrix = Eigen::Matrix3d::Zero();
+  Vec3 right = Vec3::Zero();
   for (std::uint32_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e) {
     const Vec3 d = graph.position[graph.neighbors[e]] - graph.position[i];
     const double x = d.dot(frame.x), y = d.dot(frame.y);
     const double tangential_sq = x * x + y * y;
     if (tangential_sq == 0.0) continue;
     const double directional = -2.0 * d.dot(graph.normal[i]) / d.squaredNorm();
+    const Vec3 row(1.0, (x * x - y * y) / tangential_sq, 2.0 * x * y / tangential_sq);
     const double w = static_cast<double>(graph.weight[e]);
-    total += w;
-    sum.mean += w * directional;
-    sum.re += w * directional * (x * x - y * y) / tangential_sq;
-    sum.im += w * directional * 2.0 * x * y / tangential_sq;
+    matrix.noalias() += (w * row) * row.transpose();
+    right += w * directional * row;
   }
-  if (total == 0.0) return {};
-  return {sum.mean / total, 2.0 * sum.re / total, 2.0 * sum.im / total, true};
+  if (!(matrix(0, 0) > 0.0)) return {};
+  const double ridge = 0.5 * kRidge * matrix(0, 0);
+  matrix(1, 1) += ridge;
+  matrix(2, 2) += ridge;
+  const Vec3 fit = matrix.llt().solve(right);
+  return {fit[0], fit[1], fit[2], fit.allFinite()};
 }
 
 std::vector<TangentTensor> initial_tensors(const SurfaceGraph& graph, const CurvatureOptions& options,
                                            const RunContext& context) {
   std::vector<TangentTensor> tensors(graph.size());
   const auto count = static_cast<std::size_t>(options.neighbors);
-  parallel::for_chunks(context, graph.size(), [&](std::size_t begin, std::size_t end) {
-    NearestOfRings nearest(graph);
-    for (std::size_t i = begin; i < end; ++i) {
-      if (!has_normal(graph, i)) continue;
-      const auto center = static_cast<Index>(i);
-      const TangentFrame frame = tangent_frame(graph.normal[i]);
-      if (options.method == CurvatureMethod::Taubin) {
-        tensors[i] = taubin_tensor(graph, i, frame);
-        continue;
-      }
-      const auto others = nearest.find(center, count);
-      if (others.size() < 3) continue;
-      tensors[i] = options.method == CurvatureMethod::Quadric
-                       ? shape_operator(fit_quadric(graph, center, frame, others, FitWeight::Gaussian))
-                       : fit_normal_field(graph, center, frame, others);
-    }
-  });
+  parallel::for_chunks(
+      context, graph.size(),
+      [&](std::size_t begin, std::size_t end) {
+        NearestOfRings nearest(graph);
+        for (std::size_t i = begin; i < end; ++i) {
+          if (!has_normal(graph, i)) continue;
+          const auto center = static_cast<Index>(i);
+          const TangentFrame frame = tangent_frame(graph.normal[i]);
+          if (options.method == CurvatureMethod::Taubin) {
+            tensors[i] = taubin_tensor(graph, i, frame);
+            continue;
+          }
+          const auto others = nearest.find(center, count);
+          if (others.size() < 3) continue;
+          tensors[i] = options.method == CurvatureMethod::Quadric
+                           ? shape_operator(fit_quadric(graph, center, frame, others, FitWeight::Gaussian))
+                           : fit_normal_field(graph, center, frame, others);
+        }
+      },
+      ring_chunk(graph));
   return tensors;
 }
 

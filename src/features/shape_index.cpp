@@ -31,8 +31,7 @@ std::vector<double> compute_shape_index(const SurfaceGraph& graph, const Curvatu
   check_field(graph, curvatures.k2, "k2");
   if (!(sigma >= 0.0)) throw InvalidInput(fmt::format("sigma: {}, expected a length >= 0", sigma));
 
-  const double eps =
-      options.form == ShapeIndexForm::Literal ? 0.0 : regularisation(graph, curvatures, sigma, options);
+  const double eps = options.form == ShapeIndexForm::Literal ? 0.0 : regularisation(graph, curvatures, sigma, options);
   std::vector<double> index(graph.size());
   parallel::for_chunks(context, graph.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {

@@ -1,11 +1,11 @@
 #include "shapelight/features/surface_variation.hpp"
 
 #include <Eigen/Core>
-
 #include <algorithm>
 #include <cmath>
 
 #include "core/parallel.hpp"
+#include "shapelight/spatial/kd_tree.hpp"
 
 namespace shapelight {
 namespace {
@@ -15,7 +15,8 @@ using Moments = Eigen::Array<double, 10, 1>;
 
 Moments moments_of(const Vec3& p) {
   Moments m;
-  m << p.x(), p.y(), p.z(), p.x() * p.x(), p.x() * p.y(), p.x() * p.z(), p.y() * p.y(), p.y() * p.z(), p.z() * p.z(), 0.0;
+  m << p.x(), p.y(), p.z(), p.x() * p.x(), p.x() * p.y(), p.x() * p.z(), p.y() * p.y(), p.y() * p.z(), p.z() * p.z(),
+      0.0;
   return m;
 }
 
@@ -54,9 +55,42 @@ double variation_of(const Moments& m) {
   const double trace = xx + yy + zz;
   if (!(trace > 0.0)) return 0.0;
   const double minors = xx * yy - xy * xy + xx * zz - xz * xz + yy * zz - yz * yz;
-  const double determinant =
-      xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz);
+  const double determinant = xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz);
   return std::clamp(smallest_eigenvalue(trace, minors, determinant) / trace, 0.0, 1.0 / 3.0);
+}
+
+std::vector<double> variation_by_diffusion(const SurfaceGraph& graph, int neighbors, const RunContext& context) {
+  const auto n = static_cast<double>(std::max<std::size_t>(1, graph.size()));
+  const double ring = static_cast<double>(graph.neighbors.size()) / n + 1.0;
+  const int passes = std::max(1, static_cast<int>(std::lround(neighbors / ring)));
+
+  std::vector<Moments> moments = averaged(
+      graph, [&](std::size_t i) { return moments_of(graph.position[i]); }, context);
+  for (int pass = 1; pass < passes; ++pass) {
+    moments = averaged(
+        graph, [&](std::size_t i) -> const Moments& { return moments[i]; }, context);
+  }
+  std::vector<double> variation(graph.size());
+  parallel::for_chunks(context, graph.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) variation[i] = variation_of(moments[i]);
+  });
+  return variation;
+}
+
+std::vector<double> variation_of_nearest(const SurfaceGraph& graph, int neighbors, const RunContext& context) {
+  const KdTree tree(graph.position);
+  std::vector<double> variation(graph.size());
+  parallel::for_chunks(context, graph.size(), [&](std::size_t begin, std::size_t end) {
+    std::vector<Neighbor> near;
+    for (std::size_t i = begin; i < end; ++i) {
+      if (graph.neighbors_of(i).empty()) continue;
+      tree.nearest(graph.position[i], static_cast<std::size_t>(neighbors), near);
+      Moments sum = Moments::Zero();
+      for (const Neighbor& p : near) sum += moments_of(graph.position[p.index] - graph.position[i]);
+      variation[i] = variation_of(sum / static_cast<double>(near.size()));
+    }
+  });
+  return variation;
 }
 
 }  // namespace
@@ -64,19 +98,8 @@ double variation_of(const Moments& m) {
 std::vector<double> compute_surface_variation(const SurfaceGraph& graph, const SurfaceVariationOptions& options,
                                               const RunContext& context) {
   validate_options(options);
-  const auto n = static_cast<double>(std::max<std::size_t>(1, graph.size()));
-  const double ring = static_cast<double>(graph.neighbors.size()) / n + 1.0;
-  const int passes = std::max(1, static_cast<int>(std::lround(options.neighbors / ring)));
-
-  std::vector<Moments> moments = averaged(graph, [&](std::size_t i) { return moments_of(graph.position[i]); }, context);
-  for (int pass = 1; pass < passes; ++pass) {
-    moments = averaged(graph, [&](std::size_t i) -> const Moments& { return moments[i]; }, context);
-  }
-  std::vector<double> variation(graph.size());
-  parallel::for_chunks(context, graph.size(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) variation[i] = variation_of(moments[i]);
-  });
-  return variation;
+  return options.method == SurfaceVariationMethod::Nearest ? variation_of_nearest(graph, options.neighbors, context)
+                                                           : variation_by_diffusion(graph, options.neighbors, context);
 }
 
 }  // namespace shapelight

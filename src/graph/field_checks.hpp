@@ -1,11 +1,11 @@
 #pragma once
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <cstddef>
 #include <span>
 #include <string_view>
-
-#include <fmt/format.h>
 
 #include "shapelight/core/error.hpp"
 #include "shapelight/graph/surface_graph.hpp"
@@ -25,7 +25,8 @@ inline void check_field(const SurfaceGraph& graph, std::span<const double> field
   check_size(graph, field.size(), name);
   for (std::size_t i = 0; i < field.size(); ++i) {
     if (!(field[i] >= min && field[i] <= max)) {
-      throw InvalidInput(fmt::format("{}: vertex {}: {} is out of range, expected {:g} .. {:g}", name, i, field[i], min, max));
+      throw InvalidInput(
+          fmt::format("{}: vertex {}: {} is out of range, expected {:g} .. {:g}", name, i, field[i], min, max));
     }
   }
 }

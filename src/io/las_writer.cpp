@@ -81,6 +81,7 @@ bool holds(const Field& field, const Column& column) {
 Grid fresh_grid(const Geometry& g) {
   const BoundingBox box = bounding_box(g.positions);
   const double size = (box.max - box.min).maxCoeff();
+  if (!std::isfinite(size)) throw InvalidInput("las: the box of the points is too large for double precision");
   const double extent = size > 0.0 ? size : 1.0;
   Grid grid;
   grid.scale.fill(std::pow(10.0, std::ceil(std::log10(extent / 4e9))));

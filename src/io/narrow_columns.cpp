@@ -13,7 +13,8 @@ namespace {
 
 bool is_float(double value) {
   if (!std::isfinite(value)) return true;
-  return std::abs(value) <= std::numeric_limits<float>::max() && static_cast<double>(static_cast<float>(value)) == value;
+  return std::abs(value) <= std::numeric_limits<float>::max() &&
+         static_cast<double>(static_cast<float>(value)) == value;
 }
 
 bool is_byte(double value) { return value >= 0.0 && value <= 255.0 && value == std::floor(value); }
@@ -47,9 +48,8 @@ ScalarType narrowest_float(std::span<const double> values) {
 }
 
 ScalarType narrowest_float(std::span<const Vec3> positions) {
-  const bool exact = std::all_of(positions.begin(), positions.end(), [](const Vec3& p) {
-    return is_float(p.x()) && is_float(p.y()) && is_float(p.z());
-  });
+  const bool exact = std::all_of(positions.begin(), positions.end(),
+                                 [](const Vec3& p) { return is_float(p.x()) && is_float(p.y()) && is_float(p.z()); });
   return exact ? ScalarType::Float32 : ScalarType::Float64;
 }
 

@@ -55,36 +55,28 @@ class PcdReader {
     if (header_.points > (body_.size() + 1) / (2 * values)) {
       fail(fmt::format("{} points of {} values expected, only {} bytes left", header_.points, values, body_.size()));
     }
-    std::vector<TextColumn> columns = text_columns();
+    std::vector<TextColumn> columns;
+    std::vector<std::uint8_t> is_padding;
+    for (const PcdField& field : header_.fields) {
+      is_padding.insert(is_padding.end(), field.count, field.is_padding());
+      for (std::size_t k = 0; k < field.count && !field.is_padding(); ++k) {
+        columns.emplace_back(value_name(field, k), field.type, header_.points);
+      }
+    }
     bool has_long_rows = false;
     for (std::uint64_t i = 0; i < header_.points; ++i) {
       if (i % 65536 == 0) source_.context.check();
       next_row(i);
+      auto column = columns.begin();
       for (std::size_t v = 0; v < values; ++v) {
         const std::string_view token = scanner_.next_token(',');
         if (token.empty()) scanner_.fail(fmt::format("point {}: {} values, expected {}", i, v, values));
-        columns[v].append(scanner_, token);
+        if (is_padding[v] == 0) (column++)->append(scanner_, token);
       }
       has_long_rows |= !scanner_.next_token(',').empty();
     }
     if (has_long_rows) geometry_.warnings.emplace_back("rows hold more values than FIELDS, ignored");
-    auto column = columns.begin();
-    for (const PcdField& field : header_.fields) {
-      for (std::size_t k = 0; k < field.count; ++k, ++column) {
-        if (!field.is_padding()) columns_.push_back(column->finish(geometry_.warnings));
-      }
-    }
-  }
-
-  std::vector<TextColumn> text_columns() const {
-    std::vector<TextColumn> columns;
-    for (const PcdField& field : header_.fields) {
-      const bool coordinate = field.name == "x" || field.name == "y" || field.name == "z";
-      for (std::size_t k = 0; k < field.count; ++k) {
-        columns.emplace_back(value_name(field, k), field.type, header_.points, coordinate);
-      }
-    }
-    return columns;
+    columns_ = TextColumn::finish(columns, geometry_.warnings);
   }
 
   void next_row(std::uint64_t point) {

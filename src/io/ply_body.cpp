@@ -190,8 +190,7 @@ class AsciiBody final : public PlyBody {
     for (std::size_t p = 0; p < uses.size(); ++p) {
       const PlyProperty& property = element.properties[p];
       if (uses[p] != Use::Scalar) continue;
-      const bool coordinate = property.name == "x" || property.name == "y" || property.name == "z";
-      columns.emplace_back(property.name, property.type, element.count, coordinate);
+      columns.emplace_back(property.name, property.type, element.count);
     }
     std::uint64_t num_long_rows = 0;
     for (row_ = 0; row_ < num_rows(); ++row_) {
@@ -212,7 +211,7 @@ class AsciiBody final : public PlyBody {
       warnings.push_back(
           fmt::format("{} rows of element {} hold more values than declared, ignored", num_long_rows, element.name));
     }
-    for (TextColumn& column : columns) rows.columns.push_back(column.finish(warnings));
+    rows.columns = TextColumn::finish(columns, warnings);
     return rows;
   }
 

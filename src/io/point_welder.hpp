@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "shapelight/core/types.hpp"
 #include "core/random.hpp"
+#include "shapelight/core/types.hpp"
 
 namespace shapelight::io {
 

@@ -62,8 +62,9 @@ Camera find_camera(const Source& source) {
     const std::filesystem::path beside = source.path.parent_path() / name;
     if (std::filesystem::is_regular_file(beside)) return read_camera_file(beside, source.options.depth_scale);
   }
-  fail_format(source, "png",
-              fmt::format("the camera is unknown, expected --intrinsics fx,fy,cx,cy or a file {} beside the image", own));
+  fail_format(
+      source, "png",
+      fmt::format("the camera is unknown, expected --intrinsics fx,fy,cx,cy or a file {} beside the image", own));
 }
 
 struct Memory {

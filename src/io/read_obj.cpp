@@ -191,7 +191,8 @@ class ObjReader {
     }
     for (const auto& [vertex, line] : non_finite_) {
       if (used[vertex]) {
-        scanner_.fail_at(line, fmt::format("vertex {} belongs to a face and is not finite, expected numbers", vertex + 1));
+        scanner_.fail_at(line,
+                         fmt::format("vertex {} belongs to a face and is not finite, expected numbers", vertex + 1));
       }
     }
   }
@@ -237,8 +238,8 @@ class ObjReader {
 
   void add_texcoords() {
     corner_texcoords_.resize(corner_texcoords_.empty() ? 0 : 3 * geometry_.triangles.size(), kNoIndex);
-    const std::size_t missing = static_cast<std::size_t>(
-        std::count(corner_texcoords_.begin(), corner_texcoords_.end(), kNoIndex));
+    const std::size_t missing =
+        static_cast<std::size_t>(std::count(corner_texcoords_.begin(), corner_texcoords_.end(), kNoIndex));
     if (missing > 0 || (corner_texcoords_.empty() && !texcoords_.empty())) {
       warn_count(geometry_, texcoords_.size(), "texture coordinates were left out: not every face corner has one");
       return;

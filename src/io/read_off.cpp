@@ -58,7 +58,8 @@ class OffReader {
     }
     const std::int64_t vertices = scanner_.need_integer(first, "the number of vertices");
     const std::int64_t faces = scanner_.need_integer(scanner_.next_token(), "the number of faces");
-    if (vertices < 1 || faces < 0) scanner_.fail(fmt::format("{} vertices and {} faces, expected some", vertices, faces));
+    if (vertices < 1 || faces < 0)
+      scanner_.fail(fmt::format("{} vertices and {} faces, expected some", vertices, faces));
     // The shortest lines are "0 0 0" and "3 0 1 2", each with a line end.
     constexpr std::int64_t kVertexSize = 6, kFaceSize = 8;
     const auto left = static_cast<std::int64_t>(scanner_.bytes_left()) + 1;

@@ -47,8 +47,9 @@ Geometry read_binary(const Source& source) {
       const std::byte* corner = facet + 12 + 12 * k;
       const Vec3 point(load<float>(corner), load<float>(corner + 4), load<float>(corner + 8));
       if (!point.allFinite()) {
-        fail_format(source, "stl", fmt::format("byte {}: corner {} of facet {} is not finite, expected numbers",
-                                               corner - bytes.data(), k, i));
+        fail_format(
+            source, "stl",
+            fmt::format("byte {}: corner {} of facet {} is not finite, expected numbers", corner - bytes.data(), k, i));
       }
       triangle[k] = welder.add(point);
     }
@@ -99,7 +100,8 @@ class AsciiReader {
   }
 
   void end_loop() {
-    if (!in_loop_ || corner_count_ != 3) scanner_.fail(fmt::format("a facet with {} corners, expected 3", corner_count_));
+    if (!in_loop_ || corner_count_ != 3)
+      scanner_.fail(fmt::format("a facet with {} corners, expected 3", corner_count_));
     geometry_.triangles.push_back(triangle_);
     in_loop_ = false;
   }
@@ -121,10 +123,12 @@ bool is_binary(const Source& source) {
   const bool solid = lower_case(text.substr(begin, 5)) == "solid" && text.find('\0') == std::string_view::npos;
   if (solid || bytes.empty()) return false;
   if (bytes.size() < kHeaderSize) {
-    fail_format(source, "stl", fmt::format("{} bytes, expected 'solid' or at least {} bytes", bytes.size(), kHeaderSize));
+    fail_format(source, "stl",
+                fmt::format("{} bytes, expected 'solid' or at least {} bytes", bytes.size(), kHeaderSize));
   }
-  fail_format(source, "stl", fmt::format("byte 80: the number of facets asks for {} bytes, the file has {}",
-                                         binary_size(bytes), bytes.size()));
+  fail_format(source, "stl",
+              fmt::format("byte 80: the number of facets asks for {} bytes, the file has {}", binary_size(bytes),
+                          bytes.size()));
 }
 
 }  // namespace

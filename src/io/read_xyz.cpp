@@ -16,15 +16,35 @@ using Names = std::vector<std::string>;
 // The name that PLY uses, for those that others spell differently; any other name stays as it is.
 std::string canonical_name(std::string_view name) {
   static const std::map<std::string, std::string, std::less<>> kNames = {
-      {"x", "x"},           {"y", "y"},         {"z", "z"},           {"nx", "nx"},
-      {"ny", "ny"},         {"nz", "nz"},       {"normal_x", "nx"},   {"normal_y", "ny"},
-      {"normal_z", "nz"},   {"normalx", "nx"},  {"normaly", "ny"},    {"normalz", "nz"},
-      {"red", "red"},       {"green", "green"}, {"blue", "blue"},     {"alpha", "alpha"},
-      {"r", "red"},         {"g", "green"},     {"b", "blue"},        {"a", "alpha"},
-      {"i", "intensity"},   {"intensity", "intensity"},               {"gpstime", "gps_time"},
-      {"gps_time", "gps_time"},                 {"classification", "classification"},
-      {"returnnumber", "return_number"},        {"numberofreturns", "number_of_returns"},
-      {"pointsourceid", "point_source_id"},     {"scananglerank", "scan_angle_rank"},
+      {"x", "x"},
+      {"y", "y"},
+      {"z", "z"},
+      {"nx", "nx"},
+      {"ny", "ny"},
+      {"nz", "nz"},
+      {"normal_x", "nx"},
+      {"normal_y", "ny"},
+      {"normal_z", "nz"},
+      {"normalx", "nx"},
+      {"normaly", "ny"},
+      {"normalz", "nz"},
+      {"red", "red"},
+      {"green", "green"},
+      {"blue", "blue"},
+      {"alpha", "alpha"},
+      {"r", "red"},
+      {"g", "green"},
+      {"b", "blue"},
+      {"a", "alpha"},
+      {"i", "intensity"},
+      {"intensity", "intensity"},
+      {"gpstime", "gps_time"},
+      {"gps_time", "gps_time"},
+      {"classification", "classification"},
+      {"returnnumber", "return_number"},
+      {"numberofreturns", "number_of_returns"},
+      {"pointsourceid", "point_source_id"},
+      {"scananglerank", "scan_angle_rank"},
       {"userdata", "user_data"},
   };
   if (name.size() >= 2 && name.front() == '"' && name.back() == '"') name = name.substr(1, name.size() - 2);
@@ -154,11 +174,16 @@ class XyzReader {
 
   Names guess_names() const {
     switch (columns_.size()) {
-      case 3: return {"x", "y", "z"};
-      case 4: return {"x", "y", "z", "intensity"};
-      case 6: return unit_vectors() ? Names{"x", "y", "z", "nx", "ny", "nz"} : Names{"x", "y", "z", "red", "green", "blue"};
-      case 7: return {"x", "y", "z", "intensity", "red", "green", "blue"};
-      default: break;
+      case 3:
+        return {"x", "y", "z"};
+      case 4:
+        return {"x", "y", "z", "intensity"};
+      case 6:
+        return unit_vectors() ? Names{"x", "y", "z", "nx", "ny", "nz"} : Names{"x", "y", "z", "red", "green", "blue"};
+      case 7:
+        return {"x", "y", "z", "intensity", "red", "green", "blue"};
+      default:
+        break;
     }
     Names names = {"x", "y", "z"};
     for (std::size_t k = 3; k < columns_.size(); ++k) names.push_back(fmt::format("scalar_{}", k));

@@ -13,6 +13,8 @@
 namespace shapelight::io {
 namespace {
 
+constexpr std::array<std::string_view, 3> kAxes = {"x", "y", "z"};
+
 // The next wider signed type, which holds every value of the narrower ones; Int64 is the last.
 ScalarType wider(ScalarType type) {
   switch (scalar_type_size(type)) {
@@ -50,9 +52,10 @@ bool float32_keeps(std::string_view token, double value) {
   return loss <= 0.500001 * std::pow(10.0, exponent - decimals);
 }
 
-TextColumn::TextColumn(std::string name, ScalarType type, std::size_t expected, bool wide_floats)
-    : declared_(type), keeps_float32_(wide_floats && type == ScalarType::Float32) {
-  column_ = make_column(std::move(name), keeps_float32_ ? ScalarType::Float64 : type);
+TextColumn::TextColumn(std::string name, ScalarType type, std::size_t expected)
+    : declared_(type),
+      is_trial_(type == ScalarType::Float32 && std::find(kAxes.begin(), kAxes.end(), name) != kAxes.end()) {
+  column_ = make_column(std::move(name), is_trial_ ? ScalarType::Float64 : type);
   std::visit([&](auto& v) { v.reserve(expected); }, column_.values);
 }
 
@@ -83,7 +86,7 @@ void TextColumn::widen() {
 void TextColumn::append(const TextScanner& scanner, std::string_view token) {
   if (auto* doubles = std::get_if<std::vector<double>>(&column_.values)) {
     const double value = scanner.need_double(token, column_.name);
-    if (keeps_float32_) keeps_float32_ = float32_keeps(token, value);
+    if (is_trial_ && keeps_float32_) keeps_float32_ = float32_keeps(token, value);
     doubles->push_back(value);
     return;
   }
@@ -108,22 +111,28 @@ void TextColumn::append(const TextScanner& scanner, std::string_view token) {
   }
 }
 
-Column TextColumn::finish(std::vector<std::string>& warnings) {
-  if (keeps_float32_) return converted(column_, ScalarType::Float32);
-  if (column_.type() != declared_) {
-    warnings.push_back(fmt::format("{} is declared {} but holds values that need {}; read as {}", column_.name,
-                                   scalar_type_name(declared_), scalar_type_name(column_.type()),
-                                   scalar_type_name(column_.type())));
+std::vector<Column> TextColumn::finish(std::vector<TextColumn>& columns, std::vector<std::string>& warnings) {
+  const bool float32_is_enough =
+      std::all_of(columns.begin(), columns.end(), [](const TextColumn& c) { return c.keeps_float32_; });
+  if (!float32_is_enough) warnings.emplace_back("coordinates have more digits than float32 holds; read as float64");
+  std::vector<Column> finished;
+  for (TextColumn& c : columns) {
+    if (!c.is_trial_ && c.column_.type() != c.declared_) {
+      const std::string_view type = scalar_type_name(c.column_.type());
+      warnings.push_back(fmt::format("{} is declared {} but holds values that need {}; read as {}", c.column_.name,
+                                     scalar_type_name(c.declared_), type, type));
+    }
+    const bool narrows = c.is_trial_ && float32_is_enough;
+    finished.push_back(narrows ? converted(c.column_, ScalarType::Float32) : std::move(c.column_));
   }
-  return std::move(column_);
+  return finished;
 }
 
 bool take_positions(std::vector<Column>& columns, Geometry& geometry) {
-  static constexpr std::array<std::string_view, 3> kNames = {"x", "y", "z"};
   geometry.coordinate_type = ScalarType::Float32;
   for (int axis = 0; axis < 3; ++axis) {
     const auto found =
-        std::find_if(columns.begin(), columns.end(), [&](const Column& c) { return c.name == kNames[axis]; });
+        std::find_if(columns.begin(), columns.end(), [&](const Column& c) { return c.name == kAxes[axis]; });
     if (found == columns.end()) return false;
     if (!is_exact_in_float32(found->type())) geometry.coordinate_type = ScalarType::Float64;
     geometry.positions.resize(found->size());

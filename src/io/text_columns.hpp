@@ -13,15 +13,16 @@ namespace shapelight::io {
 [[nodiscard]] bool float32_keeps(std::string_view token, double value);
 
 /// A column that grows by tokens. An integer outside the declared type widens the column to the next signed type
-/// (int8 to int16, ... int64); wide_floats reads float32 as float64 until finish() knows that float32 was enough.
+/// (int8 to int16, ... int64). The coordinates x, y, z are read as float64 even where float32 is declared; when the
+/// text of one says more than float32 holds, all three stay so.
 class TextColumn {
  public:
-  TextColumn(std::string name, ScalarType type, std::size_t expected, bool wide_floats = false);
+  TextColumn(std::string name, ScalarType type, std::size_t expected);
 
   /// Throws FormatError, through the scanner, when the token is no such number.
   void append(const TextScanner& scanner, std::string_view token);
-  /// The column; adds to `warnings` when it is wider than declared.
-  [[nodiscard]] Column finish(std::vector<std::string>& warnings);
+  /// The columns, which are moved from; adds to `warnings` where they are wider than declared.
+  [[nodiscard]] static std::vector<Column> finish(std::vector<TextColumn>& columns, std::vector<std::string>& warnings);
 
  private:
   template <class T>
@@ -30,7 +31,8 @@ class TextColumn {
 
   Column column_;
   ScalarType declared_;
-  bool keeps_float32_;
+  bool is_trial_;             // declared float32, held as float64
+  bool keeps_float32_ = true;  // of the values so far
 };
 
 /// Moves the columns x, y, z out of `columns` into the geometry's positions. coordinate_type becomes Float32 when all

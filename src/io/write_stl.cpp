@@ -1,5 +1,4 @@
 #include <Eigen/Geometry>
-
 #include <bit>
 #include <limits>
 

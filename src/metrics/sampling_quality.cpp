@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <Eigen/Eigenvalues>
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -26,10 +25,9 @@ std::vector<std::uint8_t> feature_tenth(std::span<const double> importance) {
   std::vector<Index> order(importance.size());
   std::iota(order.begin(), order.end(), Index{0});
   const std::size_t count = (importance.size() + 9) / 10;
-  std::nth_element(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count - 1), order.end(),
-                   [&](Index a, Index b) {
-                     return importance[a] > importance[b] || (importance[a] == importance[b] && a < b);
-                   });
+  std::nth_element(
+      order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count - 1), order.end(),
+      [&](Index a, Index b) { return importance[a] > importance[b] || (importance[a] == importance[b] && a < b); });
   std::vector<std::uint8_t> feature(importance.size(), 0);
   for (std::size_t k = 0; k < count; ++k) feature[order[k]] = 1;
   return feature;
@@ -70,9 +68,10 @@ void measure_features(std::span<const Vec3> reference, std::span<const double> i
   quality.feature_coverage_mean = feature_coverage.mean;
   quality.feature_coverage_max = feature_coverage.max;
   const KdTree tree(reference);
-  quality.feature_share = parallel::sum(context, samples.size(), [&](std::size_t i) {
-                            return static_cast<double>(feature[tree.nearest(samples[i]).index]);
-                          }) / static_cast<double>(samples.size());
+  quality.feature_share =
+      parallel::sum(context, samples.size(),
+                    [&](std::size_t i) { return static_cast<double>(feature[tree.nearest(samples[i]).index]); }) /
+      static_cast<double>(samples.size());
 }
 
 void measure_spacing(const KdTree& tree, std::span<const Vec3> samples, const RunContext& context,
@@ -104,8 +103,9 @@ double surface_variation(std::span<const Vec3> points) {
 SamplingQuality measure_sampling(std::span<const Vec3> reference, std::span<const double> importance,
                                  std::span<const Vec3> samples, const RunContext& context) {
   if (reference.empty() || samples.empty()) {
-    throw InvalidInput(fmt::format("sampling quality: {} reference points and {} samples, expected at least one of each",
-                                   reference.size(), samples.size()));
+    throw InvalidInput(
+        fmt::format("sampling quality: {} reference points and {} samples, expected at least one of each",
+                    reference.size(), samples.size()));
   }
   if (!importance.empty() && importance.size() != reference.size()) {
     throw InvalidInput(fmt::format("sampling quality: {} importance values, expected {}, one per reference point",
@@ -115,7 +115,8 @@ SamplingQuality measure_sampling(std::span<const Vec3> reference, std::span<cons
   require_finite(samples, "sampling quality: samples");
   for (std::size_t i = 0; i < importance.size(); ++i) {
     if (!std::isfinite(importance[i])) {
-      throw InvalidInput(fmt::format("sampling quality: importance {} is {}, expected a finite number", i, importance[i]));
+      throw InvalidInput(
+          fmt::format("sampling quality: importance {} is {}, expected a finite number", i, importance[i]));
     }
   }
   SamplingQuality quality;

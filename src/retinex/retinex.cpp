@@ -6,6 +6,7 @@
 #include "core/exponential.hpp"
 #include "core/parallel.hpp"
 #include "graph/field_checks.hpp"
+#include "graph/ring_chunk.hpp"
 
 namespace shapelight {
 namespace {
@@ -23,8 +24,12 @@ std::vector<Site> make_sites(const SurfaceGraph& graph, double length_scale) {
   std::vector<Site> sites(graph.size());
   for (std::size_t i = 0; i < sites.size(); ++i) {
     const Vec3 p = graph.position[i] * length_scale;
-    sites[i] = {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z()), 0.0f,
-                static_cast<float>(graph.area[i] / graph.total_area), 0.0f};
+    sites[i] = {static_cast<float>(p.x()),
+                static_cast<float>(p.y()),
+                static_cast<float>(p.z()),
+                0.0f,
+                static_cast<float>(graph.area[i] / graph.total_area),
+                0.0f};
   }
   return sites;
 }
@@ -66,19 +71,22 @@ void bilateral_pass(const SurfaceGraph& graph, const RetinexOptions& options, st
     sites[i].intensity = static_cast<float>(illumination[i]);
   }
   const auto limit = static_cast<std::size_t>(options.max_neighbors) + 1;
-  parallel::for_chunks(context, graph.size(), [&](std::size_t begin, std::size_t end) {
-    RingCollector rings(graph);
-    BilateralMean mean(limit);
-    for (std::size_t i = begin; i < end; ++i) {
-      illumination[i] += mean(sites, rings.collect(static_cast<Index>(i), options.rings, limit));
-    }
-  });
+  parallel::for_chunks(
+      context, graph.size(),
+      [&](std::size_t begin, std::size_t end) {
+        RingCollector rings(graph);
+        BilateralMean mean(limit);
+        for (std::size_t i = begin; i < end; ++i) {
+          illumination[i] += mean(sites, rings.collect(static_cast<Index>(i), options.rings, limit));
+        }
+      },
+      ring_chunk(graph));
 }
 
 }  // namespace
 
-RetinexResult decompose_retinex(const SurfaceGraph& graph, std::span<const double> field,
-                                const RetinexOptions& options, const RunContext& context) {
+RetinexResult decompose_retinex(const SurfaceGraph& graph, std::span<const double> field, const RetinexOptions& options,
+                                const RunContext& context) {
   validate_options(options);
   check_field(graph, field, "field", -1.0, 1.0);
   const std::size_t n = graph.size();

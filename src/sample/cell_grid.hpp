@@ -16,7 +16,7 @@ namespace shapelight {
 /// The centre of the box is the centre of a cell, so that a flat sheet does not lie on the border of its cells.
 class Lattice {
  public:
-  static constexpr int kBits = 21;                                ///< per axis
+  static constexpr int kBits = 21;                               ///< per axis
   static constexpr double kMaxCells = double{(1 << kBits) - 2};  ///< per axis; one cell stays free on either side
 
   Lattice(const BoundingBox& box, double cell) : center_(box.center()), per_length_(1.0 / cell) {
@@ -74,12 +74,12 @@ class CellGrid {
 
   Lattice lattice_;
   double cell_;
-  std::vector<Vec3> point_;                  // by slot
-  std::vector<Index> index_;                 // by slot
+  std::vector<Vec3> point_;   // by slot
+  std::vector<Index> index_;  // by slot
   std::vector<std::uint32_t> cell_of_slot_;
-  std::vector<std::uint32_t> begin_;         // first slot of every cell, and the end
-  std::vector<std::uint32_t> run_begin_;     // by cell, into runs_
-  std::vector<Range> runs_;                  // non-empty columns of three cells around a cell, at most nine
+  std::vector<std::uint32_t> begin_;      // first slot of every cell, and the end
+  std::vector<std::uint32_t> run_begin_;  // by cell, into runs_
+  std::vector<Range> runs_;               // non-empty columns of three cells around a cell, at most nine
 };
 
 /// Throws InvalidInput that names the method when the cells are too small to be numbered.

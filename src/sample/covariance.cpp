@@ -2,7 +2,6 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
-
 #include <algorithm>
 #include <array>
 #include <numeric>
@@ -55,7 +54,8 @@ void project_onto_motions(std::vector<Vec6>& constraint, const RunContext& conte
   });
 }
 
-/// Slots by falling resistance to one motion. Never more than `count` slots of a list are looked at, so it is cut there.
+/// Slots by falling resistance to one motion. Never more than `count` slots of a list are looked at, so it is cut
+/// there.
 std::vector<Index> strongest(const std::vector<Vec6>& resistance, int motion, std::size_t count) {
   std::vector<Index> slots(resistance.size());
   std::iota(slots.begin(), slots.end(), Index{0});
@@ -87,7 +87,9 @@ std::vector<Index> sample_covariance(const SurfaceGraph& graph, std::span<const 
   std::array<std::vector<Index>, 6> lists;
   parallel::for_chunks(
       context, lists.size(),
-      [&](std::size_t begin, std::size_t) { lists[begin] = strongest(resistance, static_cast<int>(begin), target.count); },
+      [&](std::size_t begin, std::size_t) {
+        lists[begin] = strongest(resistance, static_cast<int>(begin), target.count);
+      },
       1);
   context.report(0.5, "covariance sampling");
 

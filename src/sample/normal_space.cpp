@@ -14,8 +14,8 @@
 namespace shapelight {
 namespace {
 
-/// Cells of equal area on the sphere: collars from pole to pole, each cut into as many cells as its length asks for, with
-/// the collars' heights chosen so that equal shares of z (Archimedes) go to equal numbers of cells.
+/// Cells of equal area on the sphere: collars from pole to pole, each cut into as many cells as its length asks for,
+/// with the collars' heights chosen so that equal shares of z (Archimedes) go to equal numbers of cells.
 class SphereCells {
  public:
   explicit SphereCells(int collars) : first_(1, 0) {

@@ -56,7 +56,7 @@ struct DiskSet {
 /// average, so tries near the right radius differ by a few points, and one of them soon meets the count.
 DiskSet find_disks(DartBoard& board, double radius, std::size_t count, int passes, const RunContext& context) {
   DiskSet best;
-  double too_many = 0.0;       // largest radius seen with more than `count` points
+  double too_many = 0.0;  // largest radius seen with more than `count` points
   double few_enough = HUGE_VAL;
   for (int pass = 0; best.taken.empty() || (pass < passes && best.taken.size() < count); ++pass) {
     std::vector<Index> taken = board.throw_at(radius, 2 * count, context);

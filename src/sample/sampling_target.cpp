@@ -18,8 +18,8 @@ void validate(const SamplingTarget& target, std::size_t num_candidates) {
                                    target.count, target.spacing));
   }
   if (target.count > num_candidates) {
-    throw InvalidInput(
-        fmt::format("sampling target: count {}, expected at most {}, the points there are", target.count, num_candidates));
+    throw InvalidInput(fmt::format("sampling target: count {}, expected at most {}, the points there are", target.count,
+                                   num_candidates));
   }
 }
 
@@ -27,15 +27,16 @@ void check_sampling(const SurfaceGraph& graph, std::span<const Index> candidates
   validate(target, candidates.size());
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     if (candidates[i] >= graph.size() || (i > 0 && candidates[i] <= candidates[i - 1])) {
-      throw InvalidInput(fmt::format("sampling candidates: entry {} is vertex {}, expected ascending vertices below {}", i,
-                                     candidates[i], graph.size()));
+      throw InvalidInput(fmt::format("sampling candidates: entry {} is vertex {}, expected ascending vertices below {}",
+                                     i, candidates[i], graph.size()));
     }
   }
 }
 
 void require_count(const SamplingTarget& target, std::string_view method) {
   if (target.count == 0) {
-    throw InvalidInput(fmt::format("sampling method {}: spacing {:g}, expected a count or a ratio", method, target.spacing));
+    throw InvalidInput(
+        fmt::format("sampling method {}: spacing {:g}, expected a count or a ratio", method, target.spacing));
   }
 }
 

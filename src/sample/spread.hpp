@@ -11,9 +11,9 @@
 /// The two ways to spread points that the samplers share.
 namespace shapelight {
 
-/// Dart throwing: goes through `order` (slots of the grid) and takes each point that lies at least `radius` away from all
-/// taken before. Returns slots, in the order taken; appends nothing past `limit` points, which leaves holes.
-/// Pre: radius <= grid.cell().
+/// Dart throwing: goes through `order` (slots of the grid) and takes each point that lies at least `radius` away from
+/// all taken before. Returns slots, in the order taken; appends nothing past `limit` points, which leaves holes. Pre:
+/// radius <= grid.cell().
 [[nodiscard]] std::vector<std::uint32_t> throw_darts(const CellGrid& grid, std::span<const std::uint32_t> order,
                                                      double radius, std::size_t limit, const RunContext& context);
 

@@ -22,7 +22,9 @@ void sort_by_weight(std::vector<WeightedEdge>& edges) {
   constexpr std::uint32_t kBits = 11, kMask = (1U << kBits) - 1;
   std::vector<WeightedEdge> other(edges.size());
   for (std::uint32_t shift = 0; shift < 32; shift += kBits) {
-    const auto digit = [shift](const WeightedEdge& e) { return (std::bit_cast<std::uint32_t>(e.weight) >> shift) & kMask; };
+    const auto digit = [shift](const WeightedEdge& e) {
+      return (std::bit_cast<std::uint32_t>(e.weight) >> shift) & kMask;
+    };
     std::array<std::size_t, kMask + 2> start{};
     for (const WeightedEdge& e : edges) ++start[digit(e) + 1];
     std::partial_sum(start.begin(), start.end(), start.begin());
@@ -106,7 +108,8 @@ SegmentationResult segment_field(const SurfaceGraph& graph, std::span<const doub
   const double smallest = std::max(static_cast<double>(options.min_points), options.min_share * static_cast<double>(n));
   for (const WeightedEdge& e : edges) {
     const Index a = segments.find(e.a), b = segments.find(e.b);
-    if (a != b && static_cast<double>(std::min(segments.size(a), segments.size(b))) < smallest) segments.join(a, b, e.weight);
+    if (a != b && static_cast<double>(std::min(segments.size(a), segments.size(b))) < smallest)
+      segments.join(a, b, e.weight);
   }
   return number_by_lowest_vertex(segments, n);
 }

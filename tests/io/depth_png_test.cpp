@@ -49,7 +49,8 @@ TEST(DepthPng, FindsTheCameraBesideTheImage) {
   ReadOptions scale;
   scale.depth_scale = 2500;  // chosen by the caller, so it goes before the file's
   EXPECT_EQ(read_path(read_depth_png, copy, scale).positions[0].z(), 2 * own.positions[0].z());
-  for (const std::string bad : {"525 525 319.5", "0 525 319.5 239.5", "525 525 319.5 nan", "1 2 3 4 5 6 7 8 9 10", "a"}) {
+  for (const std::string bad :
+       {"525 525 319.5", "0 525 319.5 239.5", "525 525 319.5 nan", "1 2 3 4 5 6 7 8 9 10", "a"}) {
     folder.write("a.depth.intrinsics.txt", bad);
     EXPECT_THROW(read_path(read_depth_png, copy), FormatError) << bad;
   }
@@ -69,14 +70,14 @@ TEST(DepthPng, ChecksTheOptions) {
 }
 
 // One white pixel, 8 bits, and one grey pixel of 16 bits with value 0; made with zlib.
-constexpr unsigned char kByteImage[] = {
-    137, 80, 78, 71, 13, 10, 26, 10, 0, 0, 0, 13, 73, 72, 68, 82, 0, 0, 0, 1, 0, 0, 0, 1, 8, 0, 0, 0, 0, 58,
-    126, 155, 85, 0, 0, 0, 10, 73, 68, 65, 84, 120, 156, 99, 248, 15, 0, 1, 1, 1, 0, 177, 56, 246, 20, 0, 0,
-    0, 0, 73, 69, 78, 68, 174, 66, 96, 130};
-constexpr unsigned char kEmptyImage[] = {
-    137, 80, 78, 71, 13, 10, 26, 10, 0, 0, 0, 13, 73, 72, 68, 82, 0, 0, 0, 1, 0, 0, 0, 1, 16, 0, 0, 0, 0,
-    106, 238, 71, 22, 0, 0, 0, 11, 73, 68, 65, 84, 120, 156, 99, 96, 96, 0, 0, 0, 3, 0, 1, 184, 173, 58, 99,
-    0, 0, 0, 0, 73, 69, 78, 68, 174, 66, 96, 130};
+constexpr unsigned char kByteImage[] = {137, 80, 78,  71, 13, 10, 26, 10,  0,   0,  0,   13, 73,  72,  68,  82, 0,
+                                        0,   0,  1,   0,  0,  0,  1,  8,   0,   0,  0,   0,  58,  126, 155, 85, 0,
+                                        0,   0,  10,  73, 68, 65, 84, 120, 156, 99, 248, 15, 0,   1,   1,   1,  0,
+                                        177, 56, 246, 20, 0,  0,  0,  0,   73,  69, 78,  68, 174, 66,  96,  130};
+constexpr unsigned char kEmptyImage[] = {137, 80,  78,  71, 13, 10, 26, 10,  0,   0,  0,  13, 73,  72,  68, 82, 0,
+                                         0,   0,   1,   0,  0,  0,  1,  16,  0,   0,  0,  0,  106, 238, 71, 22, 0,
+                                         0,   0,   11,  73, 68, 65, 84, 120, 156, 99, 96, 96, 0,   0,   0,  3,  0,
+                                         1,   184, 173, 58, 99, 0,  0,  0,   0,   73, 69, 78, 68,  174, 66, 96, 130};
 
 template <std::size_t N>
 std::string bytes_of(const unsigned char (&bytes)[N]) {
@@ -101,10 +102,10 @@ TEST(DepthPng, RefusesDamagedImages) {
 }
 
 // The header promises 60000 x 60000 pixels, with a valid checksum, and two bytes of data follow.
-constexpr unsigned char kHugeImage[] = {
-    137, 80, 78, 71, 13, 10, 26, 10, 0, 0, 0, 13, 73, 72, 68, 82, 0, 0, 234, 96, 0, 0, 234, 96, 16, 0, 0, 0,
-    0, 245, 41, 246, 221, 0, 0, 0, 10, 73, 68, 65, 84, 120, 156, 99, 96, 0, 0, 0, 2, 0, 1, 72, 175, 164,
-    113, 0, 0, 0, 0, 73, 69, 78, 68, 174, 66, 96, 130};
+constexpr unsigned char kHugeImage[] = {137, 80,  78,  71,  13, 10,  26, 10,  0,   0,  0,  13, 73,  72, 68,  82,  0,
+                                        0,   234, 96,  0,   0,  234, 96, 16,  0,   0,  0,  0,  245, 41, 246, 221, 0,
+                                        0,   0,   10,  73,  68, 65,  84, 120, 156, 99, 96, 0,  0,   0,  2,   0,   1,
+                                        72,  175, 164, 113, 0,  0,   0,  0,   73,  69, 78, 68, 174, 66, 96,  130};
 
 TEST(DepthPng, RefusesSizesThatTheFileCannotHold) {
   EXPECT_TRUE(contains(error_of(read_depth_png, bytes_of(kHugeImage)), "60000 x 60000 pixels cannot come out of"));

@@ -81,17 +81,21 @@ std::vector<std::pair<Reader, std::string>> seeds() {
   std::vector<std::pair<Reader, std::string>> list;
   for (const auto& [reader, file, points, triangles] : kAccepted) list.emplace_back(reader, slurp(kMalformed / file));
   const Geometry mesh = square();
-  list.emplace_back(read_obj, "v 0 0 0 1 1 1\nv 1 0 0 0 0 0\nv 0 1 0 0 0 1\nvn 0 0 1\nvt 0 1\nf 1/1/1 2/1/1 \\\n-1/-1/-1\n");
+  list.emplace_back(read_obj,
+                    "v 0 0 0 1 1 1\nv 1 0 0 0 0 0\nv 0 1 0 0 0 1\nvn 0 0 1\nvt 0 1\nf 1/1/1 2/1/1 \\\n-1/-1/-1\n");
   list.emplace_back(read_stl, write_bytes(write_stl, mesh).bytes);
   list.emplace_back(read_stl, write_bytes(write_stl, mesh, {.ascii = true}).bytes);
-  list.emplace_back(read_off, "STCNOFF\n3 1 0\n1 2 3 0 0 1 9 8 7 0.5 0.25\n1 2 3 0 0 1 9 8 7 0.5 0.25\n"
-                              "1 2 4 0 0 1 9 8 7 0.5 0.25\n3 0 1 2\n");
+  list.emplace_back(read_off,
+                    "STCNOFF\n3 1 0\n1 2 3 0 0 1 9 8 7 0.5 0.25\n1 2 3 0 0 1 9 8 7 0.5 0.25\n"
+                    "1 2 4 0 0 1 9 8 7 0.5 0.25\n3 0 1 2\n");
   list.emplace_back(read_xyz, "# x y z red green blue\n1 2 3 4 5 6\n1 2 3 4 5 6\n");
   list.emplace_back(read_xyz, "2\n1 2 3 4 5 6 7\n1 2 3 4 5 6 7\n");
-  list.emplace_back(read_ptx, "1\n2\n1 2 3\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n1 0 0 1\n2 0 0 1\n");
+  list.emplace_back(read_ptx,
+                    "1\n2\n1 2 3\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n1 0 0 1\n2 0 0 1\n");
   list.emplace_back(read_osu, "1 rows\n2 columns\npixels (flag X Y Z):\n0 1\n0 1\n0 2\n0 3\n");
   list.emplace_back(read_rif, "|\nfloat ascii 1 2\n0 1\n0 2\n0 3\n1 0\n");
-  list.emplace_back(read_depth_png, slurp(std::filesystem::path(SHAPELIGHT_DATA_DIR) / "scans/tum_depth_640x480.png").substr(0, 4000));
+  list.emplace_back(read_depth_png,
+                    slurp(std::filesystem::path(SHAPELIGHT_DATA_DIR) / "scans/tum_depth_640x480.png").substr(0, 4000));
   return list;
 }
 
@@ -101,7 +105,7 @@ TEST(MeshMalformed, DamagedFilesEndInAnErrorOrAReadableGeometry) {
   options.intrinsics = CameraIntrinsics{1, 1, 0, 0};
   std::size_t read = 0, refused = 0;
   for (const auto& [reader, bytes] : seeds()) {
-    for (std::uint64_t seed = 0; seed < 150; ++seed) {
+    for (std::uint64_t seed = 0; seed < 60; ++seed) {
       const std::filesystem::path path = folder.write("input", damaged(bytes, seed));
       try {
         const Geometry geometry = read_path(reader, path, options);
@@ -111,7 +115,8 @@ TEST(MeshMalformed, DamagedFilesEndInAnErrorOrAReadableGeometry) {
           for (const Index vertex : triangle) ASSERT_LT(vertex, geometry.size());
         }
         for (const Column& column : geometry.attributes.columns()) ASSERT_EQ(column.size(), geometry.size());
-        ASSERT_TRUE(geometry.corner_texcoords.empty() || geometry.corner_texcoords.size() == 3 * geometry.triangles.size());
+        ASSERT_TRUE(geometry.corner_texcoords.empty() ||
+                    geometry.corner_texcoords.size() == 3 * geometry.triangles.size());
       } catch (const Error&) {
         ++refused;
       }

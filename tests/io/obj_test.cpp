@@ -28,8 +28,9 @@ TEST(Obj, CutsPolygonsIntoFansAndCountsThem) {
 }
 
 TEST(Obj, AcceptsContinuedLinesCrlfTabsAndComments) {
-  const Geometry mesh = read_text(read_obj, "# made by hand\r\nv 0 0 \\\r\n 0\r\nv\t1 0 0 # second\r\nv 0 1 0\\\r\n\r\n"
-                                            "f 1 \\\r\n2\\\r\n 3\r\n");
+  const Geometry mesh = read_text(read_obj,
+                                  "# made by hand\r\nv 0 0 \\\r\n 0\r\nv\t1 0 0 # second\r\nv 0 1 0\\\r\n\r\n"
+                                  "f 1 \\\r\n2\\\r\n 3\r\n");
   EXPECT_EQ(mesh.size(), 3u);
   EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 2}}));
   EXPECT_EQ(mesh.comments, (std::vector<std::string>{"made by hand"}));
@@ -39,7 +40,8 @@ TEST(Obj, AcceptsContinuedLinesCrlfTabsAndComments) {
 TEST(Obj, ReadsCrLineEnds) { EXPECT_EQ(read_text(read_obj, "v 1 2 3\rv 4 5 6\r").size(), 2u); }
 
 TEST(Obj, LeavesOtherStatementsOutWithOneWarning) {
-  const Geometry mesh = read_text(read_obj, with_triangle("mtllib a.mtl\no name\ng a b\nusemtl m\ns off\nl 1 2 \\\n3\nf 1 2 3\n"));
+  const Geometry mesh =
+      read_text(read_obj, with_triangle("mtllib a.mtl\no name\ng a b\nusemtl m\ns off\nl 1 2 \\\n3\nf 1 2 3\n"));
   EXPECT_EQ(mesh.triangles.size(), 1u);
   ASSERT_EQ(mesh.warnings.size(), 1u);
   EXPECT_TRUE(contains(mesh.warnings[0], "6 statements"));
@@ -92,7 +94,8 @@ TEST(Obj, ChoosesTheNarrowestCoordinateType) {
 }
 
 TEST(Obj, RefusesWithTheLine) {
-  EXPECT_TRUE(contains(error_of(read_obj, with_triangle("f 1 2 4\n")), "line 4: face has vertex index 4, expected 1 .. 3"));
+  EXPECT_TRUE(
+      contains(error_of(read_obj, with_triangle("f 1 2 4\n")), "line 4: face has vertex index 4, expected 1 .. 3"));
   EXPECT_TRUE(contains(error_of(read_obj, with_triangle("f 1 2 0\n")), "line 4: face has vertex index 0"));
   EXPECT_TRUE(contains(error_of(read_obj, with_triangle("f 1 2 -4\n")), "line 4: face has vertex index -4"));
   EXPECT_TRUE(contains(error_of(read_obj, with_triangle("f 1 2 99999999999\n")), "line 4"));

@@ -41,11 +41,13 @@ TEST(Off, ReadsNormalsColoursAndTexcoordsTogether) {
 
 TEST(Off, RefusesWithTheLine) {
   const auto error = [](const std::string& text) { return error_of(read_off, text); };
-  EXPECT_TRUE(contains(error("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n"), "line 6: face has vertex index 3, expected 0 .. 2"));
+  EXPECT_TRUE(contains(error("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n"),
+                       "line 6: face has vertex index 3, expected 0 .. 2"));
   EXPECT_TRUE(contains(error("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 -1\n"), "line 6: face has vertex index -1"));
   EXPECT_TRUE(contains(error("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n2 0 1 1\n"), "line 6: a face with 2 corners"));
   EXPECT_TRUE(contains(error("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n9999999999 0 1 2\n"), "line 6"));
-  EXPECT_TRUE(contains(error("OFF\n3 1 0\n0 0 0\nnan 0 0\n0 1 0\n3 0 1 2\n"), "line 6: vertex 1 of a face is not finite"));
+  EXPECT_TRUE(
+      contains(error("OFF\n3 1 0\n0 0 0\nnan 0 0\n0 1 0\n3 0 1 2\n"), "line 6: vertex 1 of a face is not finite"));
   EXPECT_TRUE(contains(error("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0       \n"), "expected 1 faces, found 0"));
   EXPECT_TRUE(contains(error("OFF\n3 1 0\n0 0 0\n"), "do not fit into the 6 bytes"));
   EXPECT_TRUE(contains(error("OFF\n1 0 0\n0 0 0 5\n"), "line 3: 1 numbers more"));

@@ -17,8 +17,8 @@ TEST(Ptx, PutsTheGridIntoRowsAndAppliesTheMatrix) {
   EXPECT_EQ(scan.grid->height, 3u);
   EXPECT_EQ(scan.grid->pixel, (std::vector<Index>{0, 2, kNoIndex, 3, 1, 4}));
   // Rows of the matrix multiply from the left: x goes to y, y to -x, then the translation.
-  EXPECT_EQ(scan.positions, (std::vector<Vec3>{{100, 201, 300}, {100, 202, 300}, {99, 203, 300}, {100, 204, 300},
-                                               {100, 205, 305}}));
+  EXPECT_EQ(scan.positions,
+            (std::vector<Vec3>{{100, 201, 300}, {100, 202, 300}, {99, 203, 300}, {100, 204, 300}, {100, 205, 305}}));
   EXPECT_EQ(*scan.viewpoint, Vec3(1, 2, 3));
   EXPECT_EQ(column(scan, "intensity"), (std::vector<double>{0.5, 0.5, 0.25, 1, 1}));
   EXPECT_EQ(scan.attributes.find("red")->type(), ScalarType::UInt8);
@@ -46,14 +46,17 @@ TEST(Ptx, ReadsARealScan) {
 
 TEST(Ptx, RefusesWithTheLine) {
   const std::string scan(kScan);
-  EXPECT_TRUE(contains(error_of(read_ptx, scan.substr(0, scan.size() - 14)), "line 15: the file ends, expected 6 points, found 5"));
+  EXPECT_TRUE(contains(error_of(read_ptx, scan.substr(0, scan.size() - 14)),
+                       "line 15: the file ends, expected 6 points, found 5"));
   EXPECT_TRUE(contains(error_of(read_ptx, "99999\n99999\n" + scan.substr(4)), "do not fit into"));
   EXPECT_TRUE(contains(error_of(read_ptx, "0\n3\n" + scan.substr(4)), "line 1: the number of columns is 0"));
   EXPECT_TRUE(contains(error_of(read_ptx, scan + "7\n"), "line 17: the file ends, expected the number of rows"));
-  EXPECT_TRUE(contains(error_of(read_ptx, "1\n1\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n0 0 0 0\n"),
-                       "without a measured point"));
-  EXPECT_TRUE(contains(error_of(read_ptx, "1\n1\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n1 2 3 4 5\n"),
-                       "line 11: 5 numbers"));
+  EXPECT_TRUE(
+      contains(error_of(read_ptx, "1\n1\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n0 0 0 0\n"),
+               "without a measured point"));
+  EXPECT_TRUE(
+      contains(error_of(read_ptx, "1\n1\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n1 2 3 4 5\n"),
+               "line 11: 5 numbers"));
 }
 
 // 2 rows of 3 pixels, of which two are valid.

@@ -66,9 +66,11 @@ TEST(Stl, ReadsAsciiWithSeveralSolidsAndCapitals) {
 
 TEST(Stl, RefusesMalformedAsciiWithTheLine) {
   const auto solid = [](const std::string& facets) { return "solid\n" + facets + "endsolid\n"; };
-  EXPECT_TRUE(contains(error_of(read_stl, solid(ascii_facet("vertex 0 0 0\nvertex 1 0 0\n"))), "line 6: a facet with 2"));
-  EXPECT_TRUE(contains(error_of(read_stl, solid(ascii_facet("vertex 0 0 0\nvertex 1 0 0\nvertex 1 1 0\nvertex 0 0 0\n"))),
-                       "line 7: a vertex, expected 3"));
+  EXPECT_TRUE(
+      contains(error_of(read_stl, solid(ascii_facet("vertex 0 0 0\nvertex 1 0 0\n"))), "line 6: a facet with 2"));
+  EXPECT_TRUE(
+      contains(error_of(read_stl, solid(ascii_facet("vertex 0 0 0\nvertex 1 0 0\nvertex 1 1 0\nvertex 0 0 0\n"))),
+               "line 7: a vertex, expected 3"));
   EXPECT_TRUE(contains(error_of(read_stl, solid(ascii_facet("vertex 0 0\n"))), "line 4: '' is not a number"));
   EXPECT_TRUE(contains(error_of(read_stl, solid(ascii_facet("vertex 0 0 inf\n"))), "line 4"));
   EXPECT_TRUE(contains(error_of(read_stl, solid("vertex 0 0 0\n")), "line 2"));

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -74,7 +73,8 @@ TEST(SamplingQuality, OfALatticeInItself) {
 
 TEST(SamplingQuality, SingleAndDuplicateSamples) {
   const std::vector<Vec3> reference{Vec3::Zero(), Vec3(3.0, 4.0, 0.0)};
-  const SamplingQuality single = measure_sampling(reference, std::vector<double>{1.0, 0.0}, std::vector<Vec3>{Vec3::Zero()});
+  const SamplingQuality single =
+      measure_sampling(reference, std::vector<double>{1.0, 0.0}, std::vector<Vec3>{Vec3::Zero()});
   EXPECT_EQ(single.coverage_max, 5.0);
   EXPECT_EQ(single.coverage_mean, 2.5);
   EXPECT_EQ(single.feature_coverage_max, 0.0);

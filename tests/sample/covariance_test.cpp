@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
-
 #include <algorithm>
 
 #include "shapelight/core/error.hpp"
@@ -21,7 +20,9 @@ SurfaceGraph grooved_plane() {
     for (int x = 0; x < 100; ++x) {
       positions.emplace_back(x / 50.0 - 1.0 + 1e-4 * random01(1, x, y), y / 50.0 - 1.0 + 1e-4 * random01(2, x, y), 0.0);
       const double side = (x + y) % 2 == 0 ? 1.0 : -1.0;
-      normals.push_back(x == 50 ? Vec3(side, 0, 1).normalized() : y == 50 ? Vec3(0, side, 1).normalized() : Vec3::UnitZ());
+      normals.push_back(x == 50   ? Vec3(side, 0, 1).normalized()
+                        : y == 50 ? Vec3(0, side, 1).normalized()
+                                  : Vec3::UnitZ());
     }
   }
   return test::point_graph(positions, normals);

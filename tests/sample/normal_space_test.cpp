@@ -39,11 +39,13 @@ TEST(NormalSpaceSampling, CellsHaveEqualArea) {
   const SurfaceGraph graph = test::ellipsoid_graph(20000, Vec3::Ones());
   const std::vector<Index> chosen = sample_normal_space(graph, test::all_vertices(graph), {.count = 82});
   // Equal cells of 4 pi / 82 are at most about 0.6 across, and each holds a sample.
-  EXPECT_LT(test::brute_coverage(graph.normal, [&] {
-              std::vector<Vec3> normals;
-              for (const Index v : chosen) normals.push_back(graph.normal[v]);
-              return normals;
-            }()), 0.75);
+  EXPECT_LT(test::brute_coverage(graph.normal,
+                                 [&] {
+                                   std::vector<Vec3> normals;
+                                   for (const Index v : chosen) normals.push_back(graph.normal[v]);
+                                   return normals;
+                                 }()),
+            0.75);
   // Uniform directions, so equal areas hold equally many points: drawing nearly all leaves the few cells with the
   // largest surplus, which deviate from 20000 / 82 = 244 by noise only (sd 15.5).
   const std::vector<Index> most = sample_normal_space(graph, test::all_vertices(graph), {.count = 82 * 180});
@@ -56,6 +58,17 @@ TEST(NormalSpaceSampling, CellsHaveEqualArea) {
   }
   const auto [low, high] = std::minmax_element(left.begin(), left.end());
   EXPECT_LT(*high, 1.35 * *low);
+}
+
+TEST(NormalSpaceSampling, DrawsCellsInRandomOrder) {
+  std::vector<Vec3> normals(30, Vec3::UnitZ());
+  for (std::size_t i = 10; i < 30; ++i) normals[i] = i < 20 ? Vec3::UnitX() : Vec3::UnitY();
+  const SurfaceGraph graph = with_normals(normals);
+  std::array<int, 3> first{};
+  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+    ++first[sample_normal_space(graph, test::all_vertices(graph), {.count = 1}, {.seed = seed})[0] / 10];
+  }
+  for (const int count : first) EXPECT_NEAR(count, 100, 30);
 }
 
 TEST(NormalSpaceSampling, IsARanking) {

@@ -45,7 +45,8 @@ TEST(PoissonSampling, AnExactCountIsAlmostAsGoodAsFarthestPoints) {
 TEST(PoissonSampling, TheSeedMatters) {
   const SurfaceGraph graph = test::ellipsoid_graph(500);
   const std::vector<Index> all = test::all_vertices(graph);
-  EXPECT_NE(sample_poisson(graph, all, {.count = 50}, {.seed = 1}), sample_poisson(graph, all, {.count = 50}, {.seed = 2}));
+  EXPECT_NE(sample_poisson(graph, all, {.count = 50}, {.seed = 1}),
+            sample_poisson(graph, all, {.count = 50}, {.seed = 2}));
 }
 
 }  // namespace

@@ -36,7 +36,8 @@ TEST(RandomSampling, AreaWeightsDrawInProportion) {
   const std::vector<Index> all = test::all_vertices(graph);
   std::size_t heavy = 0;
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
-    for (const Index v : sample_random(graph, all, {.count = 20}, {.seed = seed, .area_weighted = true})) heavy += v < 500;
+    for (const Index v : sample_random(graph, all, {.count = 20}, {.seed = seed, .area_weighted = true}))
+      heavy += v < 500;
   }
   EXPECT_NEAR(static_cast<double>(heavy) / 4000.0, 0.75, 0.03);
 }

@@ -154,15 +154,14 @@ TEST_P(SamplerContract, ProgressRisesToOne) {
   EXPECT_EQ(seen.back(), 1.0);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Methods, SamplerContract,
-    testing::Values(Method{"random", with_defaults(sample_random), false},
-                    Method{"voxel", with_defaults(sample_voxel), true},
-                    Method{"stratified", with_defaults(sample_stratified), true},
-                    Method{"poisson", with_defaults(sample_poisson), true},
-                    Method{"normal", with_defaults(sample_normal_space), false},
-                    Method{"covariance", with_defaults(sample_covariance), false}),
-    [](const auto& method) { return std::string(method.param.name); });
+INSTANTIATE_TEST_SUITE_P(Methods, SamplerContract,
+                         testing::Values(Method{"random", with_defaults(sample_random), false},
+                                         Method{"voxel", with_defaults(sample_voxel), true},
+                                         Method{"stratified", with_defaults(sample_stratified), true},
+                                         Method{"poisson", with_defaults(sample_poisson), true},
+                                         Method{"normal", with_defaults(sample_normal_space), false},
+                                         Method{"covariance", with_defaults(sample_covariance), false}),
+                         [](const auto& method) { return std::string(method.param.name); });
 
 TEST(SamplingTarget, IsExactlyOneOfCountAndSpacing) {
   EXPECT_NO_THROW(validate(SamplingTarget{.count = 3}, 3));

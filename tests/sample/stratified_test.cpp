@@ -42,7 +42,8 @@ TEST(StratifiedSampling, DrawsNearTheCentresOfStrata) {
   const SurfaceGraph graph = test::point_graph(points);
   double deviation = 0.0;
   for (std::uint64_t seed = 0; seed < 500; ++seed) {
-    const std::vector<Index> chosen = sample_stratified(graph, test::all_vertices(graph), {.spacing = 1.0}, {.seed = seed});
+    const std::vector<Index> chosen =
+        sample_stratified(graph, test::all_vertices(graph), {.spacing = 1.0}, {.seed = seed});
     ASSERT_EQ(chosen.size(), 1U);
     deviation += std::abs(graph.position[chosen[0]].x() - 0.5) / 500.0;
   }

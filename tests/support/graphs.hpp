@@ -63,7 +63,8 @@ inline SurfaceGraph graph_of_mesh(const Shape& shape) {
       graph.normal[t[k]] += cross;
       for (const Index other : {t[(k + 1) % 3], t[(k + 2) % 3]}) {
         const auto list = graph.neighbors_of(t[k]);
-        const auto e = graph.offsets[t[k]] + static_cast<std::size_t>(std::lower_bound(list.begin(), list.end(), other) - list.begin());
+        const auto e = graph.offsets[t[k]] +
+                       static_cast<std::size_t>(std::lower_bound(list.begin(), list.end(), other) - list.begin());
         graph.weight[e] += static_cast<float>(cross.norm() / 2.0);
         ++faces_at[e];
       }

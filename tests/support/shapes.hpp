@@ -47,8 +47,7 @@ inline void add_grid_faces(Shape& shape, Index columns, Index rows, bool wrap_co
   }
 }
 
-/// z = (a x^2 + b y^2) / 2 over a square grid of equilateral-like triangles, normals up; `jitter` in grid steps.
-/// Curvatures are those at the middle only to first order, exact everywhere in closed form below.
+/// z = (a x^2 + b y^2) / 2 over a square patch of nearly equilateral triangles, normals up; `jitter` in grid steps.
 inline Shape height_field(std::string name, Index side, double step, double a, double b, double jitter = 0.0) {
   Shape shape;
   shape.name = std::move(name);
@@ -82,7 +81,9 @@ inline Shape height_field(std::string name, Index side, double step, double a, d
   return shape;
 }
 
-inline Shape plane(Index side, double step, double jitter = 0.0) { return height_field("plane", side, step, 0, 0, jitter); }
+inline Shape plane(Index side, double step, double jitter = 0.0) {
+  return height_field("plane", side, step, 0, 0, jitter);
+}
 inline Shape saddle(Index side, double step, double jitter = 0.0) {
   return height_field("saddle", side, step, 1.0, -1.0, jitter);
 }
@@ -90,11 +91,11 @@ inline Shape saddle(Index side, double step, double jitter = 0.0) {
 /// Icosahedron, every triangle cut into 4^levels, on a sphere: 10 x 4^levels + 2 vertices. `jitter` in edge lengths.
 inline Shape sphere(int levels, double radius, double jitter = 0.0) {
   const double g = (1.0 + std::sqrt(5.0)) / 2.0;
-  std::vector<Vec3> p = {{-1, g, 0}, {1, g, 0}, {-1, -g, 0}, {1, -g, 0}, {0, -1, g}, {0, 1, g},
-                         {0, -1, -g}, {0, 1, -g}, {g, 0, -1}, {g, 0, 1}, {-g, 0, -1}, {-g, 0, 1}};
-  std::vector<Triangle> faces = {{0, 11, 5}, {0, 5, 1}, {0, 1, 7}, {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
-                                 {11, 10, 2}, {10, 7, 6}, {7, 1, 8}, {3, 9, 4}, {3, 4, 2}, {3, 2, 6}, {3, 6, 8},
-                                 {3, 8, 9}, {4, 9, 5}, {2, 4, 11}, {6, 2, 10}, {8, 6, 7}, {9, 8, 1}};
+  std::vector<Vec3> p = {{-1, g, 0},  {1, g, 0},  {-1, -g, 0}, {1, -g, 0}, {0, -1, g},  {0, 1, g},
+                         {0, -1, -g}, {0, 1, -g}, {g, 0, -1},  {g, 0, 1},  {-g, 0, -1}, {-g, 0, 1}};
+  std::vector<Triangle> faces = {{0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
+                                 {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
+                                 {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
   for (Vec3& v : p) v.normalize();
   for (int level = 0; level < levels; ++level) {
     std::map<std::pair<Index, Index>, Index> middle;
@@ -138,8 +139,7 @@ inline Shape cylinder(Index around, Index along, double radius) {
     for (Index c = 0; c < around; ++c) {
       // Every row is turned by half a step, so the triangles are equilateral up to the bend.
       const Index p = r * around + c, q = r * around + (c + 1) % around;
-      const Index u = p + around, v = q + around, w = (r + 1) * around + (c + around - 1) % around;
-      (void)v;
+      const Index u = p + around, w = (r + 1) * around + (c + around - 1) % around;
       shape.triangles.push_back({p, q, u});
       shape.triangles.push_back({p, u, w});
     }

@@ -10,15 +10,17 @@ namespace shapelight {
 
 /// Parameters of non_local_means().
 struct NonLocalMeansOptions {
-  int window_rings = 3;      ///< [rings] where similar patches are looked for
-  int max_candidates = 64;   ///< [points] at most so many of them, nearest rings first
-  double bandwidth_sq = 0;   ///< [field unit squared] d^2 of eq. 1; 0: twice the median patch distance of neighbours
+  int window_rings = 3;     ///< [rings] where similar patches are looked for
+  int max_candidates = 64;  ///< [points] at most so many of them, nearest rings first
+  double bandwidth_sq = 0;  ///< [field unit squared] d^2 of eq. 1; 0: twice the median patch distance of neighbours
 
   template <class Self, class Visitor>
   static void describe(Self& o, Visitor&& visit) {
     visit(OptionInfo{"nlm-rings", "rings", "Window in which similar patches are looked for.", 1, 20}, o.window_rings);
-    visit(OptionInfo{"nlm-candidates", "points", "Largest number of patches compared with each.", 1, 1000}, o.max_candidates);
-    visit(OptionInfo{"nlm-bandwidth-sq", "field unit squared", "Patch distance that counts as similar; 0: automatic.", 0, 1e300},
+    visit(OptionInfo{"nlm-candidates", "points", "Largest number of patches compared with each.", 1, 1000},
+          o.max_candidates);
+    visit(OptionInfo{"nlm-bandwidth-sq", "field unit squared", "Patch distance that counts as similar; 0: automatic.",
+                     0, 1e300},
           o.bandwidth_sq);
   }
 };

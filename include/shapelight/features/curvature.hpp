@@ -24,8 +24,9 @@ struct Curvatures {
 enum class CurvatureMethod : std::uint8_t { Taubin, Quadric, NormalField };
 
 [[nodiscard]] constexpr auto enum_names(CurvatureMethod) {
-  return std::array<std::pair<CurvatureMethod, std::string_view>, 3>{
-      {{CurvatureMethod::Taubin, "taubin"}, {CurvatureMethod::Quadric, "quadric"}, {CurvatureMethod::NormalField, "normal-field"}}};
+  return std::array<std::pair<CurvatureMethod, std::string_view>, 3>{{{CurvatureMethod::Taubin, "taubin"},
+                                                                      {CurvatureMethod::Quadric, "quadric"},
+                                                                      {CurvatureMethod::NormalField, "normal-field"}}};
 }
 
 /// Parameters of estimate_curvatures().
@@ -37,17 +38,21 @@ struct CurvatureOptions {
   template <class Self, class Visitor>
   static void describe(Self& o, Visitor&& visit) {
     visit(OptionInfo{"curvature-method", "", "How curvature is estimated.", 0, 0}, o.method);
-    visit(OptionInfo{"curvature-passes", "1", "Averages of the curvature tensor over the 1-ring.", 0, 100}, o.smoothing_passes);
-    visit(OptionInfo{"curvature-neighbors", "points", "Support of the quadric and of the normal field.", 6, 60}, o.neighbors);
+    visit(OptionInfo{"curvature-passes", "1", "Averages of the curvature tensor over the 1-ring.", 0, 100},
+          o.smoothing_passes);
+    visit(OptionInfo{"curvature-neighbors", "points", "Support of the quadric and of the normal field.", 6, 60},
+          o.neighbors);
   }
 };
 
 /// Principal curvatures at every vertex: the ingredient of eq. 2 of the paper.
 ///
 /// - Taubin: directional curvatures -2 n.(v_j - v_i) / |v_j - v_i|^2 of the edges, weighted by the surface they stand
-///   for. With the edge's tangent angle t, Taubin's k1 = 3 m1 - m2, k2 = 3 m2 - m1 become mean = sum w k / sum w and
-///   deviator = 2 sum w k (cos 2t, sin 2t) / sum w: no eigenproblem. Exact on regular rings; wants little noise.
-/// - Quadric: least-squares z = c + gx x + gy y + (a x^2 + 2 b x y + d y^2) / 2 over the nearest `neighbors` vertices of
+///   for, and the tensor that fits them. Where the edges point evenly round the vertex this is Taubin's k1 = 3 m1 - m2,
+///   k2 = 3 m2 - m1 in closed form; uneven rings, which bias his means, are fitted by least squares. Wants little
+///   noise.
+/// - Quadric: least-squares z = c + gx x + gy y + (a x^2 + 2 b x y + d y^2) / 2 over the nearest `neighbors` vertices
+/// of
 ///   the 2-ring, Gaussian weights, shape operator I^-1/2 II I^-1/2. For clean clouds.
 /// - NormalField: least-squares dn = S dx with symmetric S over the same vertices, weight max(0, n.n')^2. For noise.
 ///

@@ -14,10 +14,10 @@ struct SamplingQuality {
   double coverage_mean = 0.0;          ///< mean of those distances
   double feature_coverage_mean = 0.0;  ///< the same over the tenth of the reference with the largest importance
   double feature_coverage_max = 0.0;
-  double feature_share = 0.0;          ///< [1] share of samples whose nearest reference point is in that tenth
-  double spacing_mean = 0.0;           ///< mean distance from a sample to the nearest other one
-  double spacing_min = 0.0;            ///< smallest of those distances
-  double spacing_cv = 0.0;             ///< [1] their standard deviation by their mean; 0 is a perfect lattice
+  double feature_share = 0.0;  ///< [1] share of samples whose nearest reference point is in that tenth
+  double spacing_mean = 0.0;   ///< mean distance from a sample to the nearest other one
+  double spacing_min = 0.0;    ///< smallest of those distances
+  double spacing_cv = 0.0;     ///< [1] their standard deviation by their mean; 0 is a perfect lattice
 };
 
 /// Measures a sample against its reference points, exactly.
@@ -29,8 +29,8 @@ struct SamplingQuality {
 [[nodiscard]] SamplingQuality measure_sampling(std::span<const Vec3> reference, std::span<const double> importance,
                                                std::span<const Vec3> samples, const RunContext& context = {});
 
-/// Surface variation (Pauly, Gross and Kobbelt 2002): l0 / (l0 + l1 + l2) of the covariance of the k nearest points, the
-/// point itself included; 0 in a plane, at most 1/3. Needs neither mesh nor normals, so it is the definition of
+/// Surface variation (Pauly, Gross and Kobbelt 2002): l0 / (l0 + l1 + l2) of the covariance of the k nearest points,
+/// the point itself included; 0 in a plane, at most 1/3. Needs neither mesh nor normals, so it is the definition of
 /// "feature" that no sampler here is built on alone.
 /// Pre:    k >= 3; fewer than k points use all.
 /// Throws: InvalidInput (k, or a point that is not finite), Cancelled.

@@ -17,10 +17,13 @@ struct RetinexOptions {
 
   template <class Self, class Visitor>
   static void describe(Self& o, Visitor&& visit) {
-    visit(OptionInfo{"retinex-sigma", "mean edge lengths", "Spatial width of the illumination.", 0.1, 30}, o.spatial_sigma);
-    visit(OptionInfo{"retinex-range-sigma", "1", "Difference of intensity that counts as an edge.", 1e-3, 100}, o.range_sigma);
+    visit(OptionInfo{"retinex-sigma", "mean edge lengths", "Spatial width of the illumination.", 0.1, 30},
+          o.spatial_sigma);
+    visit(OptionInfo{"retinex-range-sigma", "1", "Difference of intensity that counts as an edge.", 1e-3, 100},
+          o.range_sigma);
     visit(OptionInfo{"retinex-rings", "rings", "Support of one bilateral mean.", 1, 20}, o.rings);
-    visit(OptionInfo{"retinex-neighbors", "points", "Largest number of vertices in one bilateral mean.", 2, 1000}, o.max_neighbors);
+    visit(OptionInfo{"retinex-neighbors", "points", "Largest number of vertices in one bilateral mean.", 2, 1000},
+          o.max_neighbors);
   }
 };
 
@@ -35,8 +38,8 @@ struct RetinexResult {
 /// area x exp(-|x - y|^2 / (2 sigma_d^2)) (eq. 6) x exp(-(I - I')^2 / (2 sigma_r^2)) (eq. 7). Reflectance
 /// R = log(I + 1) - log(L + 1) (eq. 8).
 ///
-/// A spatial_sigma above 3 does not fit into four rings: the mean is then repeated p = ceil((spatial_sigma / 3)^2) times
-/// with sigma_d / sqrt(p), each pass on the last one's result, which gives the same spread at p times the cost.
+/// A spatial_sigma above 3 does not fit into four rings: the mean is then repeated p = ceil((spatial_sigma / 3)^2)
+/// times with sigma_d / sqrt(p), each pass on the last one's result, which gives the same spread at p times the cost.
 /// Pre:   field.size() == graph.size(); values in [-1, 1].
 /// Post:  sizes n; a constant field has reflectance 0, up to rounding.
 /// Throws InvalidInput (names option or vertex), Cancelled.

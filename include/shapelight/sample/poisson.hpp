@@ -15,7 +15,7 @@ namespace shapelight {
 /// Parameters of sample_poisson().
 struct PoissonSamplingOptions {
   std::uint64_t seed = 0;  ///< the only source of randomness
-  int passes = 16;         ///< [passes] tries to find the radius of an exact count
+  int passes = 6;          ///< [passes] tries to find the radius of an exact count
 
   template <class Self, class Visitor>
   static void describe(Self& o, Visitor&& visit) {
@@ -32,9 +32,8 @@ struct PoissonSamplingOptions {
 /// `passes`; the few points that are still missing are farthest points, so nothing is ever cut off. Nearly all
 /// pairs then keep the radius, and the others lie just below it.
 /// Pre:    candidates ascending, unique, vertices of the graph.
-/// Post:   exactly target.count vertices, or a maximal set whose pairs are at least target.spacing apart; no duplicates.
-/// Throws: InvalidInput, Cancelled.
-/// Cost:   O(n log n) once and O(n) per pass, about 120 n bytes.
+/// Post:   exactly target.count vertices, or a maximal set whose pairs are at least target.spacing apart; no
+/// duplicates. Throws: InvalidInput, Cancelled. Cost:   O(n log n) once and O(n) per pass, about 120 n bytes.
 [[nodiscard]] std::vector<Index> sample_poisson(const SurfaceGraph& graph, std::span<const Index> candidates,
                                                 const SamplingTarget& target,
                                                 const PoissonSamplingOptions& options = {},

@@ -20,7 +20,8 @@ struct RandomSamplingOptions {
   template <class Self, class Visitor>
   static void describe(Self& o, Visitor&& visit) {
     visit(OptionInfo{"seed", "1", "Seed of the random numbers.", 0.0, 0x1.0p64}, o.seed);
-    visit(OptionInfo{"random-area-weighted", "1", "Draw in proportion to the surface area of a point."}, o.area_weighted);
+    visit(OptionInfo{"random-area-weighted", "1", "Draw in proportion to the surface area of a point."},
+          o.area_weighted);
   }
 };
 

@@ -4,7 +4,8 @@
 
 namespace shapelight {
 
-/// How many points a sampler shall choose. Exactly one member is set, the other is zero.
+/// How many points a sampler shall choose among its candidates; strays (SurfaceGraph::outlier) are for the caller to
+/// leave out of them, since a grid and disks would choose each one. Exactly one member is set, the other is zero.
 struct SamplingTarget {
   std::size_t count = 0;  ///< [points] met exactly
   double spacing = 0.0;   ///< [input length unit] cell size or minimum distance, by the method

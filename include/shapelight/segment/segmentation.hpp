@@ -30,14 +30,13 @@ struct SegmentationResult {
 
 /// Cuts the surface where a field changes (eq. 9 to 12 of the paper; Felzenszwalb and Huttenlocher).
 ///
-/// Edges with weight |f_i - f_j| are taken in the order (weight, i, j); an edge joins two segments when it is no heavier
-/// than min(Int(A) + k / |A|, Int(B) + k / |B|), Int being the heaviest edge of a segment's minimum spanning tree. The
-/// result is neither too fine nor too coarse (definitions 1 and 2). Then, in the same order, an edge that touches a
-/// segment below max(min_points, min_share n) joins it to the neighbour. Segments without edges out stay as they are.
-/// Pre:   field.size() == graph.size(); finite.
-/// Post:  every segment is connected; labels canonical, so equal partitions have equal labels.
-/// Throws InvalidInput (names option or vertex), Cancelled.
-/// Cost:  O(edges): weights in single precision, radix sorted. 16 bytes per edge and 12 n. Support: global.
+/// Edges with weight |f_i - f_j| are taken in the order (weight, i, j); an edge joins two segments when it is no
+/// heavier than min(Int(A) + k / |A|, Int(B) + k / |B|), Int being the heaviest edge of a segment's minimum spanning
+/// tree. The result is neither too fine nor too coarse (definitions 1 and 2). Then, in the same order, an edge that
+/// touches a segment below max(min_points, min_share n) joins it to the neighbour. Segments without edges out stay as
+/// they are. Pre:   field.size() == graph.size(); finite. Post:  every segment is connected; labels canonical, so equal
+/// partitions have equal labels. Throws InvalidInput (names option or vertex), Cancelled. Cost:  O(edges): weights in
+/// single precision, radix sorted. 16 bytes per edge and 12 n. Support: global.
 [[nodiscard]] SegmentationResult segment_field(const SurfaceGraph& graph, std::span<const double> field,
                                                const SegmentationOptions& options = {}, const RunContext& context = {});
 

@@ -1,0 +1,22 @@
+#!/usr/bin/env bash
+# Sets up everything on a Debian 12 machine, builds, and samples a real scan; leaves the result and a picture in out/.
+set -euo pipefail
+cd "$(dirname "$0")"
+
+tools/install_dependencies.sh
+cmake --preset release >/dev/null
+cmake --build --preset release
+
+shapelight=build/release/bin/shapelight
+scan=data/scans/dragonStandRight_0.ply
+mkdir -p out/quickstart
+echo
+"$shapelight" fields "$scan" -o out/quickstart/fields.ply --force
+"$shapelight" sample "$scan" -o out/quickstart/sample.ply --ratio 5% --index-field --order --force
+"$shapelight" metrics "$scan" out/quickstart/sample.ply
+"$shapelight" render out/quickstart/fields.ply -o out/quickstart/sample.png --force \
+  --color reflectance,segment,none --dots out/quickstart/sample.ply --width 1800 --height 800
+echo
+echo "the sample:  out/quickstart/sample.ply"
+echo "the picture: out/quickstart/sample.png (the scan by reflectance, by segments, and plain; the samples on top)"
+echo "the tool:    $shapelight --help"
