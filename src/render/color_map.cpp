@@ -72,10 +72,9 @@ Table two_walks(const std::vector<Lab>& below, const std::vector<Lab>& above) {
 }
 
 const Table& table_of(ColorMap map) {
-  static const Table sequential = whole_walk({from_lch(0.26, 0.09, 305), from_lch(0.34, 0.12, 285),
-                                              from_lch(0.43, 0.115, 258), from_lch(0.53, 0.10, 225),
-                                              from_lch(0.63, 0.105, 185), from_lch(0.73, 0.135, 153),
-                                              from_lch(0.82, 0.165, 125), from_lch(0.92, 0.17, 103)});
+  static const Table sequential = whole_walk(
+      {from_lch(0.26, 0.09, 305), from_lch(0.34, 0.12, 285), from_lch(0.43, 0.115, 258), from_lch(0.53, 0.10, 225),
+       from_lch(0.63, 0.105, 185), from_lch(0.73, 0.135, 153), from_lch(0.82, 0.165, 125), from_lch(0.92, 0.17, 103)});
   static const Table blue_yellow =
       whole_walk({from_lch(0.25, 0.08, 262), from_lch(0.36, 0.075, 262), from_lch(0.55, 0.012, 262),
                   from_lch(0.74, 0.08, 95), from_lch(0.92, 0.15, 95)});
@@ -84,9 +83,12 @@ const Table& table_of(ColorMap map) {
       two_walks({from_lch(0.42, 0.13, 258), from_lch(0.62, 0.12, 248), from_lch(0.80, 0.07, 240), middle},
                 {middle, from_lch(0.80, 0.09, 62), from_lch(0.62, 0.15, 48), from_lch(0.42, 0.13, 38)});
   switch (map) {
-    case ColorMap::BlueYellow: return blue_yellow;
-    case ColorMap::Diverging: return diverging;
-    default: return sequential;
+    case ColorMap::BlueYellow:
+      return blue_yellow;
+    case ColorMap::Diverging:
+      return diverging;
+    default:
+      return sequential;
   }
 }
 
@@ -107,7 +109,8 @@ Lab to_oklab(const Color& color) {
   const double l = std::cbrt(0.4122214708 * r + 0.5363325363 * g + 0.0514459929 * b);
   const double m = std::cbrt(0.2119034982 * r + 0.6806995451 * g + 0.1073969566 * b);
   const double s = std::cbrt(0.0883024619 * r + 0.2817188376 * g + 0.6299787005 * b);
-  return {0.2104542553 * l + 0.7936177850 * m - 0.0040720468 * s, 1.9779984951 * l - 2.4285922050 * m + 0.4505937099 * s,
+  return {0.2104542553 * l + 0.7936177850 * m - 0.0040720468 * s,
+          1.9779984951 * l - 2.4285922050 * m + 0.4505937099 * s,
           0.0259040371 * l + 0.7827717662 * m - 0.8086757660 * s};
 }
 

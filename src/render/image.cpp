@@ -11,10 +11,11 @@
 namespace shapelight {
 
 void write_png(const std::filesystem::path& path, const Image& image, bool overwrite) {
-  const auto expected = static_cast<std::size_t>(std::max(0, image.width)) * static_cast<std::size_t>(std::max(0, image.height));
+  const auto expected =
+      static_cast<std::size_t>(std::max(0, image.width)) * static_cast<std::size_t>(std::max(0, image.height));
   if (expected == 0 || image.pixels.size() != expected) {
-    throw InvalidInput(fmt::format("{}: an image of {} x {} holds {} pixels, expected width x height > 0", path.string(),
-                                   image.width, image.height, image.pixels.size()));
+    throw InvalidInput(fmt::format("{}: an image of {} x {} holds {} pixels, expected width x height > 0",
+                                   path.string(), image.width, image.height, image.pixels.size()));
   }
   io::OutputFile out(path, overwrite);
   png_image header{};

@@ -1,10 +1,9 @@
 #include "render/surface.hpp"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/Geometry>
-
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -106,7 +105,9 @@ std::vector<Triangle> triangulate_grid(const Geometry& geometry) {
     const Index i = grid.pixel[static_cast<std::size_t>(row) * grid.width + column];
     return i != kNoIndex && geometry.positions[i].allFinite() ? i : kNoIndex;
   };
-  const auto reach = [&](Index i) { return geometry.viewpoint ? (geometry.positions[i] - *geometry.viewpoint).norm() : 1.0; };
+  const auto reach = [&](Index i) {
+    return geometry.viewpoint ? (geometry.positions[i] - *geometry.viewpoint).norm() : 1.0;
+  };
   const auto length = [&](Index i, Index j) { return (geometry.positions[i] - geometry.positions[j]).norm(); };
   std::vector<double> steps;
   for (std::uint32_t row = 0; row < grid.height; ++row) {

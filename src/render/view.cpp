@@ -1,7 +1,6 @@
-#include <Eigen/Geometry>
-
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -44,7 +43,7 @@ Orientation orientation_of(const Geometry& geometry, const BoundingBox& box) {
   }
   if (geometry.grid && geometry.format != "ptx") return {y, z};
   const Vec3 extent = box.max - box.min;
-  const bool laser = geometry.format == "las" || geometry.format == "ptx" || geometry.format == "xyz";
+  const bool laser = geometry.format == "las" || geometry.format == "ptx";
   const bool statue = extent.z() > 1.3 * std::max(extent.x(), extent.y());
   return laser || statue || is_terrain(extent) ? Orientation{z, -y} : Orientation{y, z};
 }
@@ -81,7 +80,8 @@ Vec3 parse_eye(std::string_view text) {
   }
   if (!good || eye.norm() == 0.0) {
     throw InvalidInput(fmt::format(
-        "view '{}' is not understood, expected auto, front, back, left, right, top, bottom, iso, or a direction x,y,z", whole));
+        "view '{}' is not understood, expected auto, front, back, left, right, top, bottom, iso, or a direction x,y,z",
+        whole));
   }
   return eye;
 }

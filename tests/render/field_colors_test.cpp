@@ -29,7 +29,8 @@ TEST(ColorByField, ReadsEightAndSixteenBitColors) {
     geometry.attributes.set({name, std::vector<std::uint16_t>{65535, 0, 13107}});
   }
   EXPECT_NEAR(color_by_field(geometry, "rgb").colors[2][0], 0.2F, 1e-6);
-  for (const char* name : {"red", "green", "blue"}) geometry.attributes.set({name, std::vector<float>{1.0F, 0.5F, 0.0F}});
+  for (const char* name : {"red", "green", "blue"})
+    geometry.attributes.set({name, std::vector<float>{1.0F, 0.5F, 0.0F}});
   EXPECT_EQ(color_by_field(geometry, "rgb").colors[1][2], 0.5F);
 }
 

@@ -22,7 +22,8 @@ Image noise(int width, int height) {
   Image image(width, height, {0, 0, 0});
   std::uint32_t state = 1;
   for (Pixel& pixel : image.pixels) {
-    for (std::uint8_t& channel : pixel) channel = static_cast<std::uint8_t>((state = state * 1664525U + 1013904223U) >> 24);
+    for (std::uint8_t& channel : pixel)
+      channel = static_cast<std::uint8_t>((state = state * 1664525U + 1013904223U) >> 24);
   }
   return image;
 }

@@ -50,8 +50,10 @@ TEST(Rasterize, CoversTheSamplesWhoseCentresLieInside) {
 TEST(Rasterize, TrianglesOfASurfaceShareNoSampleAndLeaveNone) {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     Geometry geometry;
-    geometry.positions = {{2, 2, 0}, {10.5, 2, 0}, {18, 2, 0}, {18, 9.5, 0}, {18, 18, 0}, {7.5, 18, 0}, {2, 18, 0}, {2, 5.5, 0}};
-    const double x = 4 + std::floor(12 * random01(seed, 0, 0)) + 0.5, y = 4 + std::floor(12 * random01(seed, 0, 1)) + 0.5;
+    geometry.positions = {{2, 2, 0},   {10.5, 2, 0}, {18, 2, 0}, {18, 9.5, 0},
+                          {18, 18, 0}, {7.5, 18, 0}, {2, 18, 0}, {2, 5.5, 0}};
+    const double x = 4 + std::floor(12 * random01(seed, 0, 0)) + 0.5,
+                 y = 4 + std::floor(12 * random01(seed, 0, 1)) + 0.5;
     geometry.positions.push_back({x, y, 0});
     std::vector<int> times(400, 0);
     for (Index i = 0; i < 8; ++i) {
@@ -63,7 +65,8 @@ TEST(Rasterize, TrianglesOfASurfaceShareNoSampleAndLeaveNone) {
     for (int row = 0; row < 20; ++row) {
       for (int column = 0; column < 20; ++column) {
         const bool inside = row >= 2 && row < 18 && column >= 2 && column < 18;
-        EXPECT_EQ(times[static_cast<std::size_t>(row * 20 + column)], inside ? 1 : 0) << seed << ": " << column << "," << row;
+        EXPECT_EQ(times[static_cast<std::size_t>(row * 20 + column)], inside ? 1 : 0)
+            << seed << ": " << column << "," << row;
       }
     }
   }
@@ -71,7 +74,7 @@ TEST(Rasterize, TrianglesOfASurfaceShareNoSampleAndLeaveNone) {
 
 TEST(Rasterize, KeepsTheNearerSurfaceAtItsDepth) {
   Geometry geometry;  // a slope z = (x - 5) / 5 through a flat square at z = 0
-  geometry.positions = {{-5, -5, 0},  {25, -5, 0}, {-5, 25, 0}, {-5, -5, -2}, {25, -5, 4}, {-5, 25, -2}};
+  geometry.positions = {{-5, -5, 0}, {25, -5, 0}, {-5, 25, 0}, {-5, -5, -2}, {25, -5, 4}, {-5, 25, -2}};
   geometry.triangles = {{0, 1, 2}, {3, 4, 5}};
   std::vector<Color> colors(6, Color{0, 0, 1});
   std::fill_n(colors.begin(), 3, Color{1, 0, 0});

@@ -37,7 +37,8 @@ Geometry cloud_of(const testing::Shape& shape) {
 }
 
 std::size_t drawn(const Image& image) {
-  return static_cast<std::size_t>(std::count_if(image.pixels.begin(), image.pixels.end(), [](const Pixel& p) { return p != kWhite; }));
+  return static_cast<std::size_t>(
+      std::count_if(image.pixels.begin(), image.pixels.end(), [](const Pixel& p) { return p != kWhite; }));
 }
 
 double brightness(const Image& image, int x, int y) {
@@ -103,6 +104,13 @@ TEST(Render, FillsThePictureUpToTheMargin) {
   EXPECT_NE(image.at(80, 7), kWhite);
 }
 
+TEST(Render, FarStraysOfACloudDoNotShrinkIt) {
+  Geometry cloud = cloud_of(testing::sphere(3, 1.0));
+  const std::size_t whole = drawn(render({&cloud}, small()));
+  cloud.positions.push_back({500.0, 0.0, 0.0});
+  EXPECT_GT(drawn(render({&cloud}, small())), whole / 2);
+}
+
 TEST(Render, ShadesFromTheUpperLeft) {
   const Geometry geometry = mesh_of(testing::sphere(4, 1.0));
   const Image image = render({&geometry}, small());
@@ -123,8 +131,8 @@ TEST(Render, PointsCloseTheSurface) {
 
 TEST(Render, DegenerateCloudsAreDrawn) {
   Geometry geometry;
-  for (const std::vector<Vec3>& points :
-       {std::vector<Vec3>{{5, 5, 5}}, std::vector<Vec3>(40, Vec3(1, 2, 3)), std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}}) {
+  for (const std::vector<Vec3>& points : {std::vector<Vec3>{{5, 5, 5}}, std::vector<Vec3>(40, Vec3(1, 2, 3)),
+                                          std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}}) {
     geometry.positions = points;
     EXPECT_GT(drawn(render({&geometry}, small())), 0U) << points.size();
   }
@@ -135,7 +143,8 @@ TEST(Render, DrawsDotsThatTheSurfaceDoesNotHide) {
   RenderItem item{&geometry};
   item.dot_color = {1, 0, 0};
   const auto red = [](const Image& image) {
-    return std::count_if(image.pixels.begin(), image.pixels.end(), [](const Pixel& p) { return p[0] > 150 && p[1] < 60; });
+    return std::count_if(image.pixels.begin(), image.pixels.end(),
+                         [](const Pixel& p) { return p[0] > 150 && p[1] < 60; });
   };
   RenderOptions options = small();
   options.view = "front";
@@ -175,7 +184,8 @@ TEST(Render, SameBytesForAnyNumberOfThreads) {
   for (const Geometry& geometry : {mesh_of(shape), cloud_of(shape), range}) {
     RenderItem item{&geometry};
     for (std::size_t i = 0; i < geometry.size(); i += 20) item.dots.push_back(geometry.positions[i]);
-    for (std::size_t i = 0; i < geometry.size(); ++i) item.colors.push_back(distinct_color(static_cast<std::int64_t>(i / 50)));
+    for (std::size_t i = 0; i < geometry.size(); ++i)
+      item.colors.push_back(distinct_color(static_cast<std::int64_t>(i / 50)));
     const Image one = render(item, small(), {.max_threads = 1});
     for (const int threads : {2, 3, 8}) {
       EXPECT_EQ(render(item, small(), {.max_threads = threads}).pixels, one.pixels) << threads;

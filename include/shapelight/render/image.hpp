@@ -28,7 +28,8 @@ struct Image {
 
 /// Writes an 8-bit RGB PNG: to a temporary file that is then renamed, so the target is either old or complete. The
 /// same image gives the same bytes.
-/// Throws InvalidInput (no pixels, or their number is not width x height), WriteError (exists and overwrite is off, ...).
+/// Throws InvalidInput (no pixels, or their number is not width x height), WriteError (exists and overwrite is off,
+/// ...).
 void write_png(const std::filesystem::path& path, const Image& image, bool overwrite = false);
 
 /// Copies `source` into `target` with its upper left pixel at (left, top). Pre: it fits.
