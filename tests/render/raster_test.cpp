@@ -126,6 +126,21 @@ TEST(Rasterize, DrawsADiscOfTheAskedRadiusInItsPlane) {
   EXPECT_LT(frame.at(24, 20).nearness, frame.at(15, 20).nearness);
 }
 
+TEST(Camera, ProjectsBackAndForthAndNothingBehindTheEye) {
+  Camera camera = plain_camera(40);
+  camera.scale = 3.0;
+  camera.center_x = 20.0;
+  const Vec3 point(2.0, 1.5, -4.0);
+  const ScreenPoint p = camera.project(point);
+  const Vec3f back =
+      camera.unproject(static_cast<float>(p.x) / kSubpixels, static_cast<float>(p.y) / kSubpixels, p.nearness);
+  EXPECT_LT((back.cast<double>() - point).norm(), 2e-3);
+  EXPECT_EQ(camera.project({0, 0, 10}).nearness, 0.0F);
+  EXPECT_EQ(camera.project({1, 2, 15}).nearness, 0.0F);
+  EXPECT_EQ(camera.project({std::nan(""), 0, 0}).nearness, 0.0F);
+  EXPECT_EQ(camera.project({1e9, 0, 0}).nearness, 0.0F);
+}
+
 TEST(TriangulateGrid, IsCutWhereTheDepthJumps) {
   Geometry geometry;  // 6 x 3 pixels, one length unit apart; the right half lies far behind; one pixel is empty
   RangeGrid grid{6, 3, {}};
