@@ -31,7 +31,11 @@ const std::vector<Format>& formats() {
       {"stl", {".stl"}, "Stereolithography meshes", io::read_stl, io::write_stl},
       {"off", {".off"}, "Object File Format meshes", io::read_off, io::write_off},
       {"pcd", {".pcd"}, "Point Cloud Library clouds and organised clouds", io::read_pcd, io::write_pcd},
-      {"xyz", {".xyz", ".txt", ".csv", ".pts", ".asc"}, "clouds as text, one point per line", io::read_xyz, io::write_xyz},
+      {"xyz",
+       {".xyz", ".txt", ".csv", ".pts", ".asc"},
+       "clouds as text, one point per line",
+       io::read_xyz,
+       io::write_xyz},
       {"ptx", {".ptx"}, "terrestrial laser scans as text", io::read_ptx, nullptr},
       {"las", {".las"}, "ASPRS laser clouds, versions 1.0 to 1.4", io::read_las, io::write_las},
       {"png", {".png"}, "16-bit depth images with camera intrinsics", io::read_depth_png, nullptr},
@@ -60,7 +64,8 @@ std::string names_of(Member Format::*function) {
   std::string names;
   for (const Format& format : formats()) {
     if (format.*function == nullptr) continue;
-    for (const std::string_view extension : format.extensions) names += fmt::format("{}{}", names.empty() ? "" : " ", extension);
+    for (const std::string_view extension : format.extensions)
+      names += fmt::format("{}{}", names.empty() ? "" : " ", extension);
   }
   return names;
 }
@@ -89,8 +94,8 @@ std::span<const FormatInfo> supported_formats() {
 void check_writable_format(const std::filesystem::path& path) {
   const Format* format = find_format(path);
   if (format == nullptr || format->write == nullptr) {
-    throw InvalidInput(fmt::format("{}: cannot write this format, expected one of {}", path.string(),
-                                   names_of(&Format::write)));
+    throw InvalidInput(
+        fmt::format("{}: cannot write this format, expected one of {}", path.string(), names_of(&Format::write)));
   }
 }
 

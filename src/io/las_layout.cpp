@@ -66,8 +66,8 @@ constexpr std::array<Field, 7> kWave = {{{"wave_packet_index", UInt8, 0},
                                          {"wave_dz", Float32, 25}}};
 
 // Codes 1 to 10 of extra bytes; 11 to 20 and 21 to 30 are pairs and triples of them.
-constexpr std::array<ScalarType, 10> kExtraTypes = {UInt8,  Int8,   UInt16, Int16,   UInt32,
-                                                    Int32,  UInt64, Int64,  Float32, Float64};
+constexpr std::array<ScalarType, 10> kExtraTypes = {UInt8, Int8,   UInt16, Int16,   UInt32,
+                                                    Int32, UInt64, Int64,  Float32, Float64};
 
 }  // namespace
 

@@ -21,7 +21,7 @@ inline constexpr std::size_t kGlobalEncoding = 6, kVersionMinor = 25, kHeaderSiz
 inline constexpr std::size_t kMinHeaderSize = 227;  ///< versions 1.0 to 1.2
 inline constexpr std::size_t kHeaderSize14 = 375;
 
-inline constexpr std::size_t kVlrHeaderSize = 54;        ///< [bytes]
+inline constexpr std::size_t kVlrHeaderSize = 54;         ///< [bytes]
 inline constexpr std::size_t kExtraDescriptorSize = 192;  ///< [bytes] of one dimension in the extra bytes record
 inline constexpr std::uint16_t kExtraBytesRecord = 4;     ///< of user LASF_Spec
 

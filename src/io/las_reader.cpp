@@ -38,21 +38,26 @@ class LasReader {
     if (bytes_.size() < kMinHeaderSize) {
       fail(0, fmt::format("a header of {} bytes expected, the file has {}", kMinHeaderSize, bytes_.size()));
     }
-    if (std::string_view(reinterpret_cast<const char*>(bytes_.data()), 4) != "LASF") fail(0, "not a LAS file, expected LASF");
+    if (std::string_view(reinterpret_cast<const char*>(bytes_.data()), 4) != "LASF")
+      fail(0, "not a LAS file, expected LASF");
     minor_ = at<std::uint8_t>(kVersionMinor);
     if (at<std::uint8_t>(kVersionMinor - 1) != 1 || minor_ > 4) {
-      fail(kVersionMinor - 1, fmt::format("version {}.{}, expected 1.0 to 1.4", at<std::uint8_t>(kVersionMinor - 1), minor_));
+      fail(kVersionMinor - 1,
+           fmt::format("version {}.{}, expected 1.0 to 1.4", at<std::uint8_t>(kVersionMinor - 1), minor_));
     }
     header_size_ = at<std::uint16_t>(kHeaderSize);
     const std::size_t min_size = minor_ >= 4 ? kHeaderSize14 : kMinHeaderSize;
     points_offset_ = at<std::uint32_t>(kPointsOffset);
     if (header_size_ < min_size || header_size_ > points_offset_ || points_offset_ > bytes_.size()) {
-      fail(kHeaderSize, fmt::format("a header of {} bytes and points from byte {} on, expected at least {} and at most {}",
-                                    header_size_, points_offset_, min_size, bytes_.size()));
+      fail(kHeaderSize,
+           fmt::format("a header of {} bytes and points from byte {} on, expected at least {} and at most {}",
+                       header_size_, points_offset_, min_size, bytes_.size()));
     }
     const auto format = at<std::uint8_t>(kPointFormat);
-    if ((format & 0xC0) != 0) fail(kPointFormat, "the points are compressed (LAZ), expected plain LAS; the Python package reads LAZ");
-    if (format > kMaxPointFormat) fail(kPointFormat, fmt::format("point format {}, expected 0 to {}", format, kMaxPointFormat));
+    if ((format & 0xC0) != 0)
+      fail(kPointFormat, "the points are compressed (LAZ), expected plain LAS; the Python package reads LAZ");
+    if (format > kMaxPointFormat)
+      fail(kPointFormat, fmt::format("point format {}, expected 0 to {}", format, kMaxPointFormat));
     info_.point_format = format;
     for (int axis = 0; axis < 3; ++axis) {
       info_.scale[axis] = at<double>(kScale + 8 * axis);
@@ -71,8 +76,10 @@ class LasReader {
     for (std::uint32_t i = 0; i < count; ++i) {
       const std::optional<Vlr> vlr = first_vlr(left);
       if (!vlr) {
-        fail(points_offset_ - left.size(), fmt::format("variable length record {} of {} does not end before the points, "
-                                                       "expected at byte {}", i + 1, count, points_offset_));
+        fail(points_offset_ - left.size(),
+             fmt::format("variable length record {} of {} does not end before the points, "
+                         "expected at byte {}",
+                         i + 1, count, points_offset_));
       }
       if (vlr->is_extra_bytes()) {
         for (ExtraDimension& d : extra_dimensions(vlr->payload())) extra_.push_back(std::move(d));
@@ -130,12 +137,13 @@ class LasReader {
     std::size_t offset = point_size(info_.point_format);
     for (const ExtraDimension& d : extra_) {
       if (d.bytes() > stride_ - offset) {
-        fail(kRecordLength, fmt::format("extra dimensions need {} bytes per point, expected at most {}",
-                                        offset + d.bytes(), stride_));
+        fail(kRecordLength,
+             fmt::format("extra dimensions need {} bytes per point, expected at most {}", offset + d.bytes(), stride_));
       }
       if (d.type && !d.name.empty()) {
         for (std::size_t k = 0; k < d.components; ++k) read_extra(d, k, offset + k * scalar_type_size(*d.type));
-        if (d.is_scaled) warn(fmt::format("extra dimension {} has a scale or offset; its stored values are kept", d.name));
+        if (d.is_scaled)
+          warn(fmt::format("extra dimension {} has a scale or offset; its stored values are kept", d.name));
       } else {
         num_unknown_bytes_ += d.bytes();
       }

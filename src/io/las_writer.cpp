@@ -67,7 +67,8 @@ bool holds(const Field& field, const Column& column) {
   if (field.bits == 0 && field.type == column.type()) return true;
   return with_type(field.type, [&]<class T>(T) {
     // Doubles count 64-bit integers one by one up to 2^53 only.
-    const double type_high = std::is_integral_v<T> && sizeof(T) == 8 ? 9e15 : static_cast<double>(std::numeric_limits<T>::max());
+    const double type_high =
+        std::is_integral_v<T> && sizeof(T) == 8 ? 9e15 : static_cast<double>(std::numeric_limits<T>::max());
     const double high = field.bits != 0 ? (1 << field.bits) - 1 : type_high;
     const double low = static_cast<double>(std::numeric_limits<T>::lowest());
     for (std::size_t i = 0; i < column.size(); ++i) {

@@ -71,7 +71,8 @@ std::vector<PcdField> make_fields(TextScanner& scanner, const RawFields& raw) {
   std::size_t num_values = 0;
   for (std::size_t i = 0; i < n; ++i) {
     const std::optional<ScalarType> type = field_type(raw.types[i], scanner.need_integer(raw.sizes[i], "SIZE"));
-    if (!type) scanner.fail(fmt::format("field {} has an unknown SIZE and TYPE, expected I or U of 1, 2, 4, 8 or F of 4, 8", i));
+    if (!type)
+      scanner.fail(fmt::format("field {} has an unknown SIZE and TYPE, expected I or U of 1, 2, 4, 8 or F of 4, 8", i));
     const std::uint64_t count = raw.counts.empty() ? 1 : need_count(scanner, raw.counts[i], "COUNT");
     if (count < 1 || count > kMaxValuesPerPoint || (num_values += count) > kMaxValuesPerPoint) {
       scanner.fail(fmt::format("COUNT of field {} is {}, expected 1 .. {} in all", i, count, kMaxValuesPerPoint));
@@ -131,8 +132,7 @@ PcdHeader read_pcd_header(TextScanner& scanner) {
     if (!line) scanner.fail("the file ends within its header, expected DATA");
     if (line->starts_with('#')) {
       if (line->find("Point Cloud Data file format") == std::string_view::npos) {
-        const std::size_t text = line->find_first_not_of("# \t");
-        header.comments.emplace_back(text == std::string_view::npos ? "" : line->substr(text));
+        header.comments.emplace_back(line->substr(line->starts_with("# ") ? 2 : 1));
       }
       continue;
     }
@@ -159,7 +159,8 @@ PcdHeader read_pcd_header(TextScanner& scanner) {
       header.encoding = need_encoding(scanner);
       break;
     } else if (!key.empty() && key != "VERSION") {
-      scanner.fail("unknown header line, expected VERSION, FIELDS, SIZE, TYPE, COUNT, WIDTH, HEIGHT, VIEWPOINT, POINTS or DATA");
+      scanner.fail(
+          "unknown header line, expected VERSION, FIELDS, SIZE, TYPE, COUNT, WIDTH, HEIGHT, VIEWPOINT, POINTS or DATA");
     }
   }
   header.fields = make_fields(scanner, raw);

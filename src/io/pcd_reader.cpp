@@ -37,9 +37,15 @@ class PcdReader {
 
   Geometry read() {
     switch (header_.encoding) {
-      case PcdEncoding::Ascii: read_ascii(); break;
-      case PcdEncoding::Binary: read_binary(); break;
-      case PcdEncoding::Compressed: read_compressed(); break;
+      case PcdEncoding::Ascii:
+        read_ascii();
+        break;
+      case PcdEncoding::Binary:
+        read_binary();
+        break;
+      case PcdEncoding::Compressed:
+        read_compressed();
+        break;
     }
     if (!take_positions(columns_, geometry_)) fail("FIELDS lack x, y or z");
     for (Column& column : columns_) set_attribute(std::move(column));
@@ -91,8 +97,8 @@ class PcdReader {
   void read_binary() {
     const std::size_t stride = header_.bytes_per_point();
     if (header_.points > body_.size() / stride) {
-      fail(fmt::format("byte {}: {} points of {} bytes expected, {} bytes left", scanner_.byte_offset(),
-                       header_.points, stride, body_.size()));
+      fail(fmt::format("byte {}: {} points of {} bytes expected, {} bytes left", scanner_.byte_offset(), header_.points,
+                       stride, body_.size()));
     }
     std::size_t offset = 0;
     for (const PcdField& field : header_.fields) {
@@ -116,8 +122,8 @@ class PcdReader {
                        unpacked, packed, wanted, header_.points));
     }
     std::vector<std::byte> data(unpacked);
-    const unsigned size = lzf_decompress(body_.data() + 8, static_cast<unsigned>(packed), data.data(),
-                                         static_cast<unsigned>(unpacked));
+    const unsigned size =
+        lzf_decompress(body_.data() + 8, static_cast<unsigned>(packed), data.data(), static_cast<unsigned>(unpacked));
     if (size != unpacked) fail(fmt::format("the compressed data is damaged, expected {} bytes from it", unpacked));
     const std::byte* first = data.data();
     for (const PcdField& field : header_.fields) {
@@ -161,9 +167,8 @@ class PcdReader {
         packed.values);
     for (std::size_t c = 0; c < num_channels; ++c) {
       std::vector<std::uint8_t> channel(bits.size());
-      std::transform(bits.begin(), bits.end(), channel.begin(), [shift = kChannels[c].second](std::uint32_t b) {
-        return static_cast<std::uint8_t>(b >> shift);
-      });
+      std::transform(bits.begin(), bits.end(), channel.begin(),
+                     [shift = kChannels[c].second](std::uint32_t b) { return static_cast<std::uint8_t>(b >> shift); });
       geometry_.attributes.set({kChannels[c].first, std::move(channel)});
     }
   }

@@ -1,8 +1,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <limits>
+#include <optional>
+#include <set>
 
 #include "io/formats.hpp"
 #include "io/scalar_bytes.hpp"
@@ -73,21 +76,20 @@ char type_letter(ScalarType type) {
   return scalar_type_name(type).starts_with('u') ? 'U' : 'I';
 }
 
-std::vector<const Column*> fields_of(const Geometry& g, const std::optional<Column>& color, DroppedAttributes& dropped) {
+std::vector<const Column*> fields_of(const Geometry& g, const std::optional<Column>& color,
+                                     DroppedAttributes& dropped) {
   static constexpr std::array<std::string_view, 4> kPacked = {"red", "green", "blue", "alpha"};
-  static constexpr std::array<std::string_view, 3> kCoordinates = {"x", "y", "z"};
-  const auto is_one_of = [](const auto& names, const Column& c) {
-    return std::find(names.begin(), names.end(), c.name) != names.end();
-  };
+  std::set<std::string> names = {"x", "y", "z", "X", "Y", "Z"};  // the reader takes capitals for coordinates, too
   std::vector<const Column*> fields;
   for (const Column& column : g.attributes.columns()) {
-    const bool is_byte = column.type() == ScalarType::UInt8;
-    if (color && is_byte && is_one_of(kPacked, column)) {
-      if (column.name == "red") fields.push_back(&*color);
-    } else if (is_one_of(kCoordinates, column) || column.size() != g.size()) {
-      dropped.push_back(column.name);
+    const bool is_packed = color && column.type() == ScalarType::UInt8 &&
+                           std::find(kPacked.begin(), kPacked.end(), column.name) != kPacked.end();
+    if (is_packed && column.name != "red") continue;
+    const Column& field = is_packed ? *color : column;
+    if (field.size() == g.size() && names.insert(field_name(field.name)).second) {
+      fields.push_back(&field);
     } else {
-      fields.push_back(&column);
+      dropped.push_back(column.name);
     }
   }
   if (!g.triangles.empty()) dropped.emplace_back("triangles");
@@ -144,9 +146,8 @@ void put_point(std::string& buffer, const Geometry& g, const std::vector<const C
     }
   }
   for (const Column* field : fields) {
-    std::visit(
-        [&]<class T>(const std::vector<T>& values) { put(buffer, i == kNoIndex ? T{} : values[i], ascii); },
-        field->values);
+    std::visit([&]<class T>(const std::vector<T>& values) { put(buffer, i == kNoIndex ? T{} : values[i], ascii); },
+               field->values);
   }
   if (ascii) buffer.back() = '\n';
 }

@@ -28,7 +28,8 @@ std::vector<Use> uses_of(const PlyElement& element, PlyRows& rows, std::vector<s
   for (const PlyProperty& property : element.properties) {
     Use use = use_of(property);
     if (use == Use::Indices && std::exchange(rows.has_indices, true)) use = Use::Skipped;
-    if (use == Use::Skipped) warnings.push_back(fmt::format("list {} of element {} skipped", property.name, element.name));
+    if (use == Use::Skipped)
+      warnings.push_back(fmt::format("list {} of element {} skipped", property.name, element.name));
     uses.push_back(use);
   }
   return uses;
@@ -96,10 +97,18 @@ class BinaryBody final : public PlyBody {
       for (std::size_t p = 0; p < uses.size(); ++p) {
         const PlyProperty& property = element_->properties[p];
         switch (uses[p]) {
-          case Use::Scalar: read_scalar(property, rows.columns[column++]); break;
-          case Use::Indices: read_indices(property, rows.indices); break;
-          case Use::Texcoords: read_texcoords(property, rows.texcoords); break;
-          case Use::Skipped: (void)take(read_count(property), scalar_type_size(property.type), property); break;
+          case Use::Scalar:
+            read_scalar(property, rows.columns[column++]);
+            break;
+          case Use::Indices:
+            read_indices(property, rows.indices);
+            break;
+          case Use::Texcoords:
+            read_texcoords(property, rows.texcoords);
+            break;
+          case Use::Skipped:
+            (void)take(read_count(property), scalar_type_size(property.type), property);
+            break;
         }
       }
     }
@@ -199,10 +208,18 @@ class AsciiBody final : public PlyBody {
       for (std::size_t p = 0; p < uses.size(); ++p) {
         const PlyProperty& property = element.properties[p];
         switch (uses[p]) {
-          case Use::Scalar: columns[column++].append(scanner_, need_token(property)); break;
-          case Use::Indices: read_indices(property, rows.indices); break;
-          case Use::Texcoords: read_texcoords(property, rows.texcoords); break;
-          case Use::Skipped: skip_list(property); break;
+          case Use::Scalar:
+            columns[column++].append(scanner_, need_token(property));
+            break;
+          case Use::Indices:
+            read_indices(property, rows.indices);
+            break;
+          case Use::Texcoords:
+            read_texcoords(property, rows.texcoords);
+            break;
+          case Use::Skipped:
+            skip_list(property);
+            break;
         }
       }
       if (!scanner_.next_token().empty()) ++num_long_rows;
@@ -240,7 +257,8 @@ class AsciiBody final : public PlyBody {
     for (;;) {
       const std::optional<std::string_view> line = scanner_.next_line();
       if (!line) {
-        scanner_.fail(fmt::format("the file ends, expected element {} {} of {}", element_->name, row_, element_->count));
+        scanner_.fail(
+            fmt::format("the file ends, expected element {} {} of {}", element_->name, row_, element_->count));
       }
       if (line->find_first_not_of(" \t") != std::string_view::npos) return;
     }

@@ -24,9 +24,9 @@ struct RowLists {
 
 /// What one element of the body holds, as far as anybody asked for it.
 struct PlyRows {
-  std::vector<Column> columns;   ///< the scalars, in file order
-  RowLists<Index> indices;       ///< vertex_indices or vertex_index; -1 becomes kNoIndex
-  RowLists<float> texcoords;     ///< texcoord
+  std::vector<Column> columns;  ///< the scalars, in file order
+  RowLists<Index> indices;      ///< vertex_indices or vertex_index; -1 becomes kNoIndex
+  RowLists<float> texcoords;    ///< texcoord
   bool has_indices = false;
 };
 

@@ -14,26 +14,14 @@ namespace {
 constexpr std::size_t kMaxElements = 256;
 constexpr std::size_t kMaxProperties = 4096;
 
-constexpr std::array<std::pair<std::string_view, ScalarType>, 20> kTypeNames = {{{"char", ScalarType::Int8},
-                                                                                 {"int8", ScalarType::Int8},
-                                                                                 {"uchar", ScalarType::UInt8},
-                                                                                 {"uint8", ScalarType::UInt8},
-                                                                                 {"short", ScalarType::Int16},
-                                                                                 {"int16", ScalarType::Int16},
-                                                                                 {"ushort", ScalarType::UInt16},
-                                                                                 {"uint16", ScalarType::UInt16},
-                                                                                 {"int", ScalarType::Int32},
-                                                                                 {"int32", ScalarType::Int32},
-                                                                                 {"uint", ScalarType::UInt32},
-                                                                                 {"uint32", ScalarType::UInt32},
-                                                                                 {"long", ScalarType::Int64},
-                                                                                 {"int64", ScalarType::Int64},
-                                                                                 {"ulong", ScalarType::UInt64},
-                                                                                 {"uint64", ScalarType::UInt64},
-                                                                                 {"float", ScalarType::Float32},
-                                                                                 {"float32", ScalarType::Float32},
-                                                                                 {"double", ScalarType::Float64},
-                                                                                 {"float64", ScalarType::Float64}}};
+constexpr std::array<std::pair<std::string_view, ScalarType>, 20> kTypeNames = {
+    {{"char", ScalarType::Int8},      {"int8", ScalarType::Int8},      {"uchar", ScalarType::UInt8},
+     {"uint8", ScalarType::UInt8},    {"short", ScalarType::Int16},    {"int16", ScalarType::Int16},
+     {"ushort", ScalarType::UInt16},  {"uint16", ScalarType::UInt16},  {"int", ScalarType::Int32},
+     {"int32", ScalarType::Int32},    {"uint", ScalarType::UInt32},    {"uint32", ScalarType::UInt32},
+     {"long", ScalarType::Int64},     {"int64", ScalarType::Int64},    {"ulong", ScalarType::UInt64},
+     {"uint64", ScalarType::UInt64},  {"float", ScalarType::Float32},  {"float32", ScalarType::Float32},
+     {"double", ScalarType::Float64}, {"float64", ScalarType::Float64}}};
 
 ScalarType need_type(TextScanner& scanner, std::string_view token) {
   const auto* found =

@@ -69,8 +69,8 @@ class Assembler {
     const bool complete = uv.size() == 2 * num_corners;
     if (!complete) ++num_bad_texcoords_;
     for (const std::size_t corner : {std::size_t{0}, i - 1, i}) {
-      geometry_.corner_texcoords.push_back(
-          complete ? std::array<float, 2>{uv[2 * corner], uv[2 * corner + 1]} : std::array<float, 2>{});
+      geometry_.corner_texcoords.push_back(complete ? std::array<float, 2>{uv[2 * corner], uv[2 * corner + 1]}
+                                                    : std::array<float, 2>{});
     }
   }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <set>
 
 #include "io/formats.hpp"
 #include "io/scalar_bytes.hpp"
@@ -14,15 +15,24 @@ constexpr std::size_t kFlushBytes = std::size_t{1} << 20;
 // The names that all readers know; 64-bit integers are an extension that several of them share.
 std::string_view ply_type_name(ScalarType type) {
   switch (type) {
-    case ScalarType::Int8: return "char";
-    case ScalarType::UInt8: return "uchar";
-    case ScalarType::Int16: return "short";
-    case ScalarType::UInt16: return "ushort";
-    case ScalarType::Int32: return "int";
-    case ScalarType::UInt32: return "uint";
-    case ScalarType::Float32: return "float";
-    case ScalarType::Float64: return "double";
-    default: return scalar_type_name(type);
+    case ScalarType::Int8:
+      return "char";
+    case ScalarType::UInt8:
+      return "uchar";
+    case ScalarType::Int16:
+      return "short";
+    case ScalarType::UInt16:
+      return "ushort";
+    case ScalarType::Int32:
+      return "int";
+    case ScalarType::UInt32:
+      return "uint";
+    case ScalarType::Float32:
+      return "float";
+    case ScalarType::Float64:
+      return "double";
+    default:
+      return scalar_type_name(type);
   }
 }
 
@@ -72,12 +82,12 @@ std::string property_name(std::string name) {
   return name.empty() ? "unnamed" : name;
 }
 
-// The columns that can be stored beside the properties that the element has anyway.
-std::vector<const Column*> storable(const AttributeTable& table, std::size_t size,
-                                    std::initializer_list<std::string_view> reserved, DroppedAttributes& dropped) {
+// The columns that can be stored beside the properties that the element has anyway (`names`).
+std::vector<const Column*> storable(const AttributeTable& table, std::size_t size, std::set<std::string> names,
+                                    DroppedAttributes& dropped) {
   std::vector<const Column*> columns;
   for (const Column& column : table.columns()) {
-    if (column.size() != size || std::find(reserved.begin(), reserved.end(), column.name) != reserved.end()) {
+    if (column.size() != size || !names.insert(property_name(column.name)).second) {
       dropped.push_back(column.name);
     } else {
       columns.push_back(&column);
@@ -92,6 +102,12 @@ void add_properties(std::string& header, const std::vector<const Column*>& colum
   }
 }
 
+// Lines that the reader takes for the grid or the viewpoint must not come from free text.
+bool is_obj_info(const std::string& comment) {
+  return comment.starts_with("obj_info ") && !comment.starts_with("obj_info num_") &&
+         !comment.starts_with("obj_info viewpoint");
+}
+
 struct Layout {
   std::vector<const Column*> vertex_columns;
   std::vector<const Column*> face_columns;
@@ -101,7 +117,7 @@ struct Layout {
 std::string make_header(const Geometry& g, const Layout& layout, bool ascii) {
   std::string header = fmt::format("ply\nformat {} 1.0\n", ascii ? "ascii" : "binary_little_endian");
   for (const std::string& comment : g.comments) {
-    header += comment.starts_with("obj_info ") ? one_line(comment) : "comment " + one_line(comment);
+    header += is_obj_info(comment) ? one_line(comment) : "comment " + one_line(comment);
     header += '\n';
   }
   if (g.viewpoint) {

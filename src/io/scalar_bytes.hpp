@@ -54,16 +54,26 @@ void append_bytes(std::string& out, T value) {
 template <class Body>
 decltype(auto) with_type(ScalarType type, Body&& body) {
   switch (type) {
-    case ScalarType::Int8: return body(std::int8_t{});
-    case ScalarType::UInt8: return body(std::uint8_t{});
-    case ScalarType::Int16: return body(std::int16_t{});
-    case ScalarType::UInt16: return body(std::uint16_t{});
-    case ScalarType::Int32: return body(std::int32_t{});
-    case ScalarType::UInt32: return body(std::uint32_t{});
-    case ScalarType::Int64: return body(std::int64_t{});
-    case ScalarType::UInt64: return body(std::uint64_t{});
-    case ScalarType::Float32: return body(float{});
-    case ScalarType::Float64: break;
+    case ScalarType::Int8:
+      return body(std::int8_t{});
+    case ScalarType::UInt8:
+      return body(std::uint8_t{});
+    case ScalarType::Int16:
+      return body(std::int16_t{});
+    case ScalarType::UInt16:
+      return body(std::uint16_t{});
+    case ScalarType::Int32:
+      return body(std::int32_t{});
+    case ScalarType::UInt32:
+      return body(std::uint32_t{});
+    case ScalarType::Int64:
+      return body(std::int64_t{});
+    case ScalarType::UInt64:
+      return body(std::uint64_t{});
+    case ScalarType::Float32:
+      return body(float{});
+    case ScalarType::Float64:
+      break;
   }
   return body(double{});
 }

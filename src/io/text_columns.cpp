@@ -18,9 +18,12 @@ constexpr std::array<std::string_view, 3> kAxes = {"x", "y", "z"};
 // The next wider signed type, which holds every value of the narrower ones; Int64 is the last.
 ScalarType wider(ScalarType type) {
   switch (scalar_type_size(type)) {
-    case 1: return ScalarType::Int16;
-    case 2: return ScalarType::Int32;
-    default: return ScalarType::Int64;
+    case 1:
+      return ScalarType::Int16;
+    case 2:
+      return ScalarType::Int32;
+    default:
+      return ScalarType::Int64;
   }
 }
 

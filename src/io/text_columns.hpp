@@ -31,7 +31,7 @@ class TextColumn {
 
   Column column_;
   ScalarType declared_;
-  bool is_trial_;             // declared float32, held as float64
+  bool is_trial_;              // declared float32, held as float64
   bool keeps_float32_ = true;  // of the values so far
 };
 

@@ -94,10 +94,16 @@ TEST(Las, BitFieldsOfOldFormats) {
   put<std::int8_t>(file, point + 16, -12);
   put<std::uint16_t>(file, point + 28, 0xABCD);
   const Geometry g = read_geometry(folder.file("a.las", file));
-  const std::map<std::string, double> expected = {
-      {"return_number", 2}, {"number_of_returns", 3}, {"scan_direction_flag", 0}, {"edge_of_flight_line", 1},
-      {"classification", 2}, {"synthetic", 1},        {"keypoint", 0},            {"withheld", 1},
-      {"scan_angle", -12},   {"red", 0xABCD}};
+  const std::map<std::string, double> expected = {{"return_number", 2},
+                                                  {"number_of_returns", 3},
+                                                  {"scan_direction_flag", 0},
+                                                  {"edge_of_flight_line", 1},
+                                                  {"classification", 2},
+                                                  {"synthetic", 1},
+                                                  {"keypoint", 0},
+                                                  {"withheld", 1},
+                                                  {"scan_angle", -12},
+                                                  {"red", 0xABCD}};
   for (const auto& [name, value] : expected) EXPECT_EQ(g.attributes.find(name)->as_double(0), value) << name;
   EXPECT_EQ(g.positions[0].x(), -5 * 0.01 + 1000.0);
 }
@@ -111,10 +117,17 @@ TEST(Las, BitFieldsOfNewFormats) {
   put<std::uint8_t>(file, point + 16, 200);
   put<std::int16_t>(file, point + 18, -30000);
   const Geometry g = read_geometry(folder.file("a.las", file));
-  const std::map<std::string, double> expected = {
-      {"return_number", 14}, {"number_of_returns", 5}, {"synthetic", 1},           {"keypoint", 0},
-      {"withheld", 0},       {"overlap", 1},           {"scanner_channel", 2},     {"scan_direction_flag", 1},
-      {"edge_of_flight_line", 0}, {"classification", 200}, {"scan_angle", -30000}};
+  const std::map<std::string, double> expected = {{"return_number", 14},
+                                                  {"number_of_returns", 5},
+                                                  {"synthetic", 1},
+                                                  {"keypoint", 0},
+                                                  {"withheld", 0},
+                                                  {"overlap", 1},
+                                                  {"scanner_channel", 2},
+                                                  {"scan_direction_flag", 1},
+                                                  {"edge_of_flight_line", 0},
+                                                  {"classification", 200},
+                                                  {"scan_angle", -30000}};
   for (const auto& [name, value] : expected) EXPECT_EQ(g.attributes.find(name)->as_double(0), value) << name;
 }
 
@@ -186,7 +199,8 @@ TEST(Las, ThroughPlyKeepsUtmPrecision) {
     EXPECT_LE((back.positions[i] - g.positions[i]).cwiseAbs().maxCoeff(), 1e-8 * size);
   }
   EXPECT_EQ(back.attributes.find("gps_time")->to_doubles(), g.attributes.find("gps_time")->to_doubles());
-  EXPECT_EQ(back.attributes.find("scan_angle")->as_double(0), std::round(g.attributes.find("scan_angle")->as_double(0) / 0.006));
+  EXPECT_EQ(back.attributes.find("scan_angle")->as_double(0),
+            std::round(g.attributes.find("scan_angle")->as_double(0) / 0.006));
 }
 
 TEST(Las, FreshHeaderForOtherInputs) {
@@ -194,7 +208,8 @@ TEST(Las, FreshHeaderForOtherInputs) {
   Geometry g;
   g.positions = {{1e-3, 2e-3, 0}, {4e-3, 0, 1e-3}, {NAN, 0, 0}};
   g.attributes.set({"red", std::vector<std::uint8_t>{255, 1, 0}});
-  g.attributes.set({"intensity", std::vector<float>{0.5f, 7.0f, 0}});  // no 16-bit integer: keeps its values as an extra
+  g.attributes.set(
+      {"intensity", std::vector<float>{0.5f, 7.0f, 0}});  // no 16-bit integer: keeps its values as an extra
   g.attributes.set({"classification", std::vector<std::int32_t>{2, 255, 0}});
   g.attributes.set({"shape_index", std::vector<double>{-0.25, NAN, 0}});
   EXPECT_EQ(write_geometry(folder.file("a.las"), g), std::vector<std::string>{"1 points without finite coordinates"});
@@ -256,7 +271,8 @@ TEST(Las, RefusesWithThePlace) {
       {with(kScale, 0.0), "scale"},
       {with(kOffset, std::numeric_limits<double>::quiet_NaN()), "offset"},
       {with(kNumVlrs, std::uint32_t{1}), "variable length record 1 of 1"},
-      {counting_file(0, 2, extra_bytes_vlr({{"height", 9}})), "extra dimensions need 24 bytes per point, expected at most 22"},
+      {counting_file(0, 2, extra_bytes_vlr({{"height", 9}})),
+       "extra dimensions need 24 bytes per point, expected at most 22"},
   };
   for (const auto& [text, expected] : cases) {
     const std::string message = test::refusal(folder.file("bad.las", text));

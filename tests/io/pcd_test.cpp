@@ -49,7 +49,7 @@ Geometry organised(ScalarType coordinates) {
     g.attributes.set(std::move(column));
   }
   g.viewpoint = Vec3(0.1, 2.0, -3.0);
-  g.comments = {"made by hand", "viewpoint_quaternion 0 1 0 0"};
+  g.comments = {"made by hand", " two  blanks", "", "viewpoint_quaternion 0 1 0 0"};
   return g;
 }
 
@@ -144,7 +144,11 @@ TEST(Pcd, FieldsOfSeveralValuesAndPadding) {
 TEST(Pcd, CompressedBytes) {
   const TempFolder folder;
   std::string text = header("x y z", "1 1 1", "U U U", "1 1 1", 6, 1, "binary_compressed");
-  const std::string stream = std::string("\x09" "ABCDEFGHIJ" "\xC0\x09", 13);  // 8 bytes, 10 back
+  const std::string stream = std::string(
+      "\x09"
+      "ABCDEFGHIJ"
+      "\xC0\x09",
+      13);  // 8 bytes, 10 back
   io::append_bytes(text, static_cast<std::uint32_t>(stream.size()));
   io::append_bytes(text, std::uint32_t{18});
   const Geometry g = read_geometry(folder.file("a.pcd", text + stream));
@@ -195,12 +199,16 @@ TEST(Pcd, RefusesWithThePlace) {
   }
 }
 
-TEST(Pcd, WriterReportsTrianglesAsDropped) {
+TEST(Pcd, WriterReportsWhatItCannotHold) {
   const TempFolder folder;
   Geometry g;
+  g.attributes.set({"nx", std::vector<float>{1, 0, 0}});
+  g.attributes.set({"normal_x", std::vector<float>{1, 0, 0}});
+  g.attributes.set({"X", std::vector<float>{1, 0, 0}});
   g.positions = {{1, 2, 3}, {1, 0, 0}, {0, 0, 0}};
   g.triangles = {{0, 1, 2}};
-  EXPECT_EQ(write_geometry(folder.file("a.pcd"), g), std::vector<std::string>{"triangles"});
+  EXPECT_EQ(write_geometry(folder.file("a.pcd"), g), (std::vector<std::string>{"normal_x", "X", "triangles"}));
+  EXPECT_EQ(read_geometry(folder.file("a.pcd")).attributes.columns().size(), 1u);
 }
 
 }  // namespace

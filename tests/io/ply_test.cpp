@@ -13,8 +13,7 @@ namespace {
 using test::expect_same;
 using test::TempFolder;
 
-constexpr const char* kTriangleHeader =
-    "element vertex 4\nproperty float x\nproperty float y\nproperty float z\n";
+constexpr const char* kTriangleHeader = "element vertex 4\nproperty float x\nproperty float y\nproperty float z\n";
 constexpr const char* kFourVertices = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
 
 Geometry read_ascii(const TempFolder& folder, const std::string& header, const std::string& body) {
@@ -108,34 +107,37 @@ TEST(Ply, BigEndianBytes) {
       "ply\nformat binary_big_endian 1.0\nelement vertex 3\nproperty float x\nproperty double y\nproperty short z\n"
       "property uchar red\nelement face 1\nproperty list ushort uint vertex_index\nend_header\n";
   for (int i = 0; i < 3; ++i) {
-    text += std::string("\x3F\x80\0\0", 4);              // 1.0f
-    text += std::string("\xC0\0\0\0\0\0\0\0", 8);        // -2.0
-    text += std::string("\x01\x02", 2);                  // 258
+    text += std::string("\x3F\x80\0\0", 4);        // 1.0f
+    text += std::string("\xC0\0\0\0\0\0\0\0", 8);  // -2.0
+    text += std::string("\x01\x02", 2);            // 258
     text += static_cast<char>(200 + i);
   }
   text += std::string("\0\x03\0\0\0\x02\0\0\0\x01\0\0\0\0", 14);
   const Geometry g = read_geometry(folder.file("a.ply", text));
   EXPECT_EQ(g.positions[2], Vec3(1.0, -2.0, 258.0));
   EXPECT_EQ(g.coordinate_type, ScalarType::Float64);
-  EXPECT_EQ(std::get<std::vector<std::uint8_t>>(g.attributes.find("red")->values), (std::vector<std::uint8_t>{200, 201, 202}));
+  EXPECT_EQ(std::get<std::vector<std::uint8_t>>(g.attributes.find("red")->values),
+            (std::vector<std::uint8_t>{200, 201, 202}));
   EXPECT_EQ(g.triangles, (std::vector<Triangle>{{2, 1, 0}}));
 }
 
 TEST(Ply, LoneReturnsInHeaderLeaveNewlineToBody) {
   const TempFolder folder;
-  std::string text = "ply\rformat binary_little_endian 1.0\relement vertex 1\rproperty uchar x\rproperty uchar y\r"
-                     "property uchar z\rend_header\r";
+  std::string text =
+      "ply\rformat binary_little_endian 1.0\relement vertex 1\rproperty uchar x\rproperty uchar y\r"
+      "property uchar z\rend_header\r";
   const Geometry g = read_geometry(folder.file("a.ply", text + "\n\x02\x03"));
   EXPECT_EQ(g.positions[0], Vec3(10.0, 2.0, 3.0));
 }
 
 TEST(Ply, PolygonsBecomeFans) {
   const TempFolder folder;
-  const Geometry g = read_ascii(folder,
-                                std::string(kTriangleHeader) +
-                                    "element face 3\nproperty list char short vertex_indices\nproperty uchar tag\n"
-                                    "property list uchar float texcoord\n",
-                                std::string(kFourVertices) + "4 0 1 2 3 9 8 0 0 1 0 1 1 0 1\n2 0 1 7 0\n3 3 2 1 5 2 .5 .5\n");
+  const Geometry g =
+      read_ascii(folder,
+                 std::string(kTriangleHeader) +
+                     "element face 3\nproperty list char short vertex_indices\nproperty uchar tag\n"
+                     "property list uchar float texcoord\n",
+                 std::string(kFourVertices) + "4 0 1 2 3 9 8 0 0 1 0 1 1 0 1\n2 0 1 7 0\n3 3 2 1 5 2 .5 .5\n");
   EXPECT_EQ(g.triangles, (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}, {3, 2, 1}}));
   EXPECT_EQ(g.triangle_attributes.find("tag")->to_doubles(), (std::vector<double>{9, 9, 5}));
   ASSERT_EQ(g.corner_texcoords.size(), 9u);
@@ -150,9 +152,9 @@ TEST(Ply, PolygonsBecomeFans) {
 // Odd triangles of a strip are turned over; -1 starts anew; 2 2 only steers.
 TEST(Ply, StripsUnroll) {
   const TempFolder folder;
-  const Geometry g = read_ascii(folder,
-                                std::string(kTriangleHeader) + "element tristrips 2\nproperty list int int vertex_indices\n",
-                                std::string(kFourVertices) + "8 0 1 2 3 -1 3 2 1\n4 0 1 2 2\n");
+  const Geometry g =
+      read_ascii(folder, std::string(kTriangleHeader) + "element tristrips 2\nproperty list int int vertex_indices\n",
+                 std::string(kFourVertices) + "8 0 1 2 3 -1 3 2 1\n4 0 1 2 2\n");
   EXPECT_EQ(g.triangles, (std::vector<Triangle>{{0, 1, 2}, {2, 1, 3}, {3, 2, 1}, {0, 1, 2}}));
 }
 
@@ -160,7 +162,8 @@ TEST(Ply, UnknownListsAreSteppedOver) {
   const TempFolder folder;
   std::string text =
       "ply\nformat binary_little_endian 1.0\nelement junk 2\nproperty list uchar short a\nproperty double b\n"
-      "element vertex 1\nproperty uchar x\nproperty list uchar uchar more\nproperty uchar y\nproperty uchar z\nend_header\n";
+      "element vertex 1\nproperty uchar x\nproperty list uchar uchar more\nproperty uchar y\nproperty uchar "
+      "z\nend_header\n";
   for (const int items : {2, 0}) {
     text += static_cast<char>(items);
     text += std::string(2 * items + 8, '\x7f');
@@ -168,7 +171,8 @@ TEST(Ply, UnknownListsAreSteppedOver) {
   text += "\x05\x02zz\x06\x07";
   const Geometry g = read_geometry(folder.file("a.ply", text));
   EXPECT_EQ(g.positions, (std::vector<Vec3>{{5, 6, 7}}));
-  EXPECT_EQ(g.warnings, (std::vector<std::string>{"element junk with 2 rows skipped", "list more of element vertex skipped"}));
+  EXPECT_EQ(g.warnings,
+            (std::vector<std::string>{"element junk with 2 rows skipped", "list more of element vertex skipped"}));
 }
 
 TEST(Ply, TextThatSaysMoreThanFloat32IsReadAsFloat64) {
@@ -197,11 +201,21 @@ TEST(Ply, WriterReportsWhatItCannotHold) {
   g.positions = {{1, 2, 3}};
   g.attributes.set({"x", std::vector<float>{1}});
   g.attributes.set({"two words", std::vector<float>{4}});
+  g.attributes.set({"two\twords", std::vector<float>{5}});
   g.comments = {"two\nlines"};
-  EXPECT_EQ(write_geometry(folder.file("a.ply"), g), std::vector<std::string>{"x"});
+  EXPECT_EQ(write_geometry(folder.file("a.ply"), g), (std::vector<std::string>{"x", "two\twords"}));
   const Geometry back = read_geometry(folder.file("a.ply"));
   EXPECT_EQ(back.attributes.find("two_words")->as_double(0), 4.0);
   EXPECT_EQ(back.comments, std::vector<std::string>{"two lines"});
+}
+
+TEST(Ply, CommentsAreNotTakenForGridOrViewpoint) {
+  const TempFolder folder;
+  Geometry g;
+  g.positions = {{1, 2, 3}};
+  g.comments = {"obj_info num_cols none", "obj_info viewpoint unknown"};
+  (void)write_geometry(folder.file("a.ply"), g);
+  expect_same(g, read_geometry(folder.file("a.ply")));
 }
 
 struct BadPly {
@@ -216,33 +230,45 @@ TEST(Ply, RefusesWithThePlace) {
   const std::string xyz = "property float x\nproperty float y\nproperty float z\n", end = "end_header\n";
   const std::string face = "element face 1\nproperty list uchar int vertex_indices\n";
   const std::vector<BadPly> cases = {
-      {"huge count", binary + "element vertex 99999999999\n" + xyz + end + "abc", "99999999999 vertices, expected at most"},
+      {"huge count", binary + "element vertex 99999999999\n" + xyz + end + "abc",
+       "99999999999 vertices, expected at most"},
       {"huge text count", ascii + "element vertex 4000000000\n" + xyz + end + "1 2 3\n", "4000000000 elements vertex"},
       {"beyond 64 bits", ascii + "element vertex 99999999999999999999\n" + xyz + end, "line 3"},
       {"negative", ascii + "element vertex -1\n" + xyz + end, "-1 elements"},
       {"short body", binary + "element vertex 2\n" + xyz + end + std::string(23, 'a'), "23 bytes left"},
-      {"long list", binary + "element vertex 1\n" + xyz + face + end + std::string(12, '\0') + "\x03" + std::string(8, '\0'),
+      {"long list",
+       binary + "element vertex 1\n" + xyz + face + end + std::string(12, '\0') + "\x03" + std::string(8, '\0'),
        "element face 0: property vertex_indices: 12 bytes expected, 8 left"},
       {"index too large", ascii + kTriangleHeader + face + end + kFourVertices + "3 0 1 4\n",
        "element face 0: vertex index 4, expected less than 4"},
       {"negative index", ascii + kTriangleHeader + face + end + kFourVertices + "3 0 1 -1\n", "vertex index -1"},
-      {"very negative index", ascii + kTriangleHeader + face + end + kFourVertices + "3 0 1 -2\n", "-2 is no vertex index"},
-      {"index in strip", ascii + kTriangleHeader + "element tristrips 1\nproperty list int int vertex_indices\n" + end +
-                             kFourVertices + "3 0 1 9\n", "tristrips 0: vertex index 9"},
-      {"not a number", ascii + kTriangleHeader + end + "0 0 0\n0 zero 0\n0 0 0\n0 0 0\n", "line 9: 'zero' is not a number"},
-      {"fraction in integer", ascii + kTriangleHeader + "property int n\n" + end + "0 0 0 1.5\n0 0 0 1\n0 0 0 1\n0 0 0 1\n",
+      {"very negative index", ascii + kTriangleHeader + face + end + kFourVertices + "3 0 1 -2\n",
+       "-2 is no vertex index"},
+      {"index in strip",
+       ascii + kTriangleHeader + "element tristrips 1\nproperty list int int vertex_indices\n" + end + kFourVertices +
+           "3 0 1 9\n",
+       "tristrips 0: vertex index 9"},
+      {"not a number", ascii + kTriangleHeader + end + "0 0 0\n0 zero 0\n0 0 0\n0 0 0\n",
+       "line 9: 'zero' is not a number"},
+      {"fraction in integer",
+       ascii + kTriangleHeader + "property int n\n" + end + "0 0 0 1.5\n0 0 0 1\n0 0 0 1\n0 0 0 1\n",
        "line 9: '1.5' is not an integer"},
-      {"short row within", ascii + kTriangleHeader + end + "0 0 0.00\n0 0\n0 0 0\n0 0 0\n", "element vertex 1: the row ends, expected z"},
-      {"double property", ascii + "element vertex 1\n" + xyz + "property float x\n" + end + "0 0 0 0\n", "occurs twice"},
+      {"short row within", ascii + kTriangleHeader + end + "0 0 0.00\n0 0\n0 0 0\n0 0 0\n",
+       "element vertex 1: the row ends, expected z"},
+      {"double property", ascii + "element vertex 1\n" + xyz + "property float x\n" + end + "0 0 0 0\n",
+       "occurs twice"},
       {"double element", ascii + kTriangleHeader + kTriangleHeader + end, "occurs twice"},
       {"unknown type", ascii + "element vertex 1\nproperty quad x\n" + end, "line 4: unknown property type"},
-      {"float count", ascii + kTriangleHeader + "element face 1\nproperty list float int vertex_indices\n" + end, "integer type"},
+      {"float count", ascii + kTriangleHeader + "element face 1\nproperty list float int vertex_indices\n" + end,
+       "integer type"},
       {"no end", ascii + kTriangleHeader, "expected end_header"},
-      {"grid size", ascii + "obj_info num_cols 2\nobj_info num_rows 2\n" + kTriangleHeader +
-                        "element range_grid 1\nproperty list uchar int vertex_indices\n" + end + kFourVertices + "0\n",
+      {"grid size",
+       ascii + "obj_info num_cols 2\nobj_info num_rows 2\n" + kTriangleHeader +
+           "element range_grid 1\nproperty list uchar int vertex_indices\n" + end + kFourVertices + "0\n",
        "range_grid has 1 cells, expected obj_info num_cols x num_rows = 2 x 2"},
-      {"grid cell of two", ascii + "obj_info num_cols 1\nobj_info num_rows 1\n" + kTriangleHeader +
-                               "element range_grid 1\nproperty list uchar int vertex_indices\n" + end + kFourVertices + "2 0 1\n",
+      {"grid cell of two",
+       ascii + "obj_info num_cols 1\nobj_info num_rows 1\n" + kTriangleHeader +
+           "element range_grid 1\nproperty list uchar int vertex_indices\n" + end + kFourVertices + "2 0 1\n",
        "range_grid 0: 2 vertex indices"},
       {"no finite point", ascii + "element vertex 1\n" + xyz + end + "nan nan nan\n", "none of them finite"},
   };

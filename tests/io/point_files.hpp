@@ -21,8 +21,8 @@ class TempFolder {
  public:
   TempFolder() {
     const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-    path_ = std::filesystem::temp_directory_path() / ("shapelight_" + std::to_string(::getpid()) + "_" +
-                                                      info->test_suite_name() + "_" + info->name());
+    path_ = std::filesystem::temp_directory_path() /
+            ("shapelight_" + std::to_string(::getpid()) + "_" + info->test_suite_name() + "_" + info->name());
     std::filesystem::create_directories(path_);
   }
   ~TempFolder() {
@@ -47,7 +47,9 @@ inline std::string contents_of(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-inline std::filesystem::path data_file(const std::string& name) { return std::filesystem::path(SHAPELIGHT_DATA_DIR) / name; }
+inline std::filesystem::path data_file(const std::string& name) {
+  return std::filesystem::path(SHAPELIGHT_DATA_DIR) / name;
+}
 
 /// The message of the FormatError that reading must end in; empty when it does not.
 inline std::string refusal(const std::filesystem::path& path) {
