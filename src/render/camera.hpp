@@ -34,12 +34,14 @@ struct Camera {
   [[nodiscard]] Vec3f unproject(float x, float y, float nearness) const {
     const float per_pixel = 1.0F / (static_cast<float>(scale) * nearness);
     const auto d = static_cast<float>(distance);
-    return {(x - static_cast<float>(center_x)) * per_pixel, (static_cast<float>(center_y) - y) * per_pixel, d - d / nearness};
+    return {(x - static_cast<float>(center_x)) * per_pixel, (static_cast<float>(center_y) - y) * per_pixel,
+            d - d / nearness};
   }
   [[nodiscard]] Vec3f rotate(const Vec3f& direction) const { return axes.cast<float>() * direction; }
 };
 
-/// The camera that shows all finite points as large as a margin of 4 % allows. Throws InvalidInput without any.
+/// The camera that shows all finite points, but for far strays of a cloud, as large as a margin of 4 % allows. Throws
+/// InvalidInput without any.
 Camera fit_camera(const Geometry& geometry, const View& view, int width, int height, double field_of_view_deg);
 
 }  // namespace shapelight::drawing

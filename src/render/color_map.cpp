@@ -42,36 +42,53 @@ Color to_gamut(Lab lab) {
 
 double distance(const Lab& a, const Lab& b) { return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]); }
 
-/// Walks the polyline through the control points at constant speed in OKLab.
-Table walk(const std::vector<Lab>& points) {
+/// Fills the entries first .. last by walking the polyline through the control points at constant speed in OKLab.
+void walk(const std::vector<Lab>& points, std::size_t first, std::size_t last, Table& table) {
   std::vector<double> arc = {0.0};
   for (std::size_t i = 1; i < points.size(); ++i) arc.push_back(arc.back() + distance(points[i - 1], points[i]));
-  Table table{};
   std::size_t segment = 1;
-  for (std::size_t k = 0; k < kTableSize; ++k) {
-    const double at = arc.back() * static_cast<double>(k) / (kTableSize - 1);
+  for (std::size_t k = first; k <= last; ++k) {
+    const double at = arc.back() * static_cast<double>(k - first) / static_cast<double>(last - first);
     while (segment + 1 < points.size() && arc[segment] < at) ++segment;
     const double u = std::clamp((at - arc[segment - 1]) / (arc[segment] - arc[segment - 1]), 0.0, 1.0);
     Lab lab;
     for (std::size_t c = 0; c < 3; ++c) lab[c] = (1.0 - u) * points[segment - 1][c] + u * points[segment][c];
     table[k] = to_gamut(lab);
   }
+}
+
+Table whole_walk(const std::vector<Lab>& points) {
+  Table table{};
+  walk(points, 0, kTableSize - 1, table);
+  return table;
+}
+
+/// Two walks away from the middle, which is thus the middle whatever the lengths of the arms.
+Table two_walks(const std::vector<Lab>& below, const std::vector<Lab>& above) {
+  Table table{};
+  walk(below, 0, kTableSize / 2, table);
+  walk(above, kTableSize / 2, kTableSize - 1, table);
   return table;
 }
 
 const Table& table_of(ColorMap map) {
-  static const Table sequential = walk({from_lch(0.26, 0.09, 305), from_lch(0.34, 0.12, 285), from_lch(0.43, 0.115, 258),
-                                        from_lch(0.53, 0.10, 225), from_lch(0.63, 0.105, 185), from_lch(0.73, 0.135, 153),
-                                        from_lch(0.82, 0.165, 125), from_lch(0.92, 0.17, 103)});
-  static const Table blue_yellow = walk({from_lch(0.25, 0.08, 262), from_lch(0.36, 0.075, 262), from_lch(0.55, 0.012, 262),
-                                         from_lch(0.74, 0.08, 95), from_lch(0.92, 0.15, 95)});
-  static const Table diverging = walk({from_lch(0.42, 0.13, 258), from_lch(0.62, 0.12, 248), from_lch(0.80, 0.07, 240),
-                                       from_lch(0.965, 0.004, 150), from_lch(0.80, 0.09, 62), from_lch(0.62, 0.15, 48),
-                                       from_lch(0.42, 0.13, 38)});
+  static const Table sequential = whole_walk(
+      {from_lch(0.26, 0.09, 305), from_lch(0.34, 0.12, 285), from_lch(0.43, 0.115, 258), from_lch(0.53, 0.10, 225),
+       from_lch(0.63, 0.105, 185), from_lch(0.73, 0.135, 153), from_lch(0.82, 0.165, 125), from_lch(0.92, 0.17, 103)});
+  static const Table blue_yellow =
+      whole_walk({from_lch(0.25, 0.08, 262), from_lch(0.36, 0.075, 262), from_lch(0.55, 0.012, 262),
+                  from_lch(0.74, 0.08, 95), from_lch(0.92, 0.15, 95)});
+  static const Lab middle = from_lch(0.965, 0.004, 150);
+  static const Table diverging =
+      two_walks({from_lch(0.42, 0.13, 258), from_lch(0.62, 0.12, 248), from_lch(0.80, 0.07, 240), middle},
+                {middle, from_lch(0.80, 0.09, 62), from_lch(0.62, 0.15, 48), from_lch(0.42, 0.13, 38)});
   switch (map) {
-    case ColorMap::BlueYellow: return blue_yellow;
-    case ColorMap::Diverging: return diverging;
-    default: return sequential;
+    case ColorMap::BlueYellow:
+      return blue_yellow;
+    case ColorMap::Diverging:
+      return diverging;
+    default:
+      return sequential;
   }
 }
 
@@ -92,7 +109,8 @@ Lab to_oklab(const Color& color) {
   const double l = std::cbrt(0.4122214708 * r + 0.5363325363 * g + 0.0514459929 * b);
   const double m = std::cbrt(0.2119034982 * r + 0.6806995451 * g + 0.1073969566 * b);
   const double s = std::cbrt(0.0883024619 * r + 0.2817188376 * g + 0.6299787005 * b);
-  return {0.2104542553 * l + 0.7936177850 * m - 0.0040720468 * s, 1.9779984951 * l - 2.4285922050 * m + 0.4505937099 * s,
+  return {0.2104542553 * l + 0.7936177850 * m - 0.0040720468 * s,
+          1.9779984951 * l - 2.4285922050 * m + 0.4505937099 * s,
           0.0259040371 * l + 0.7827717662 * m - 0.8086757660 * s};
 }
 

@@ -14,7 +14,8 @@ using Columns = std::array<const Column*, 3>;
 
 Columns find_columns(const Geometry& geometry, const std::array<std::string_view, 3>& names) {
   Columns columns{};
-  std::transform(names.begin(), names.end(), columns.begin(), [&](auto name) { return geometry.attributes.find(name); });
+  std::transform(names.begin(), names.end(), columns.begin(),
+                 [&](auto name) { return geometry.attributes.find(name); });
   return columns;
 }
 
@@ -46,7 +47,8 @@ std::vector<Color> combine(const Columns& columns, double scale, double offset) 
 }
 
 bool names_labels(std::string_view name) {
-  constexpr std::array<std::string_view, 6> kNames = {"segment", "segments", "label", "labels", "class", "classification"};
+  constexpr std::array<std::string_view, 6> kNames = {"segment", "segments", "label",
+                                                      "labels",  "class",    "classification"};
   return std::find(kNames.begin(), kNames.end(), name) != kNames.end();
 }
 
@@ -71,7 +73,8 @@ Legend choose_legend(std::span<const double> values, std::string_view name) {
 std::vector<Color> colors_of(const Legend& legend, std::span<const double> values) {
   std::vector<Color> colors(values.size());
   std::transform(values.begin(), values.end(), colors.begin(), [&](double v) {
-    if (legend.map == ColorMap::Categorical) return distinct_color(std::isfinite(v) ? static_cast<std::int64_t>(v) : -1);
+    if (legend.map == ColorMap::Categorical)
+      return distinct_color(std::isfinite(v) ? static_cast<std::int64_t>(v) : -1);
     return map_color(legend.map, std::isfinite(v) ? (v - legend.min) / (legend.max - legend.min) : std::nan(""));
   });
   return colors;
@@ -106,7 +109,8 @@ FieldColors color_by_field(const Geometry& geometry, std::string_view field) {
     const ValueRange range = value_range(values);  // a coordinate's zero means nothing: never diverging
     const Legend legend{std::string(field), ColorMap::Sequential, range.min, range.max};
     return {colors_of(legend, values), legend};
-  } else if (const Column* column = geometry.attributes.find(field); column != nullptr && column->size() == geometry.size()) {
+  } else if (const Column* column = geometry.attributes.find(field);
+             column != nullptr && column->size() == geometry.size()) {
     return color_by_values(column->to_doubles(), field);
   }
   throw InvalidInput(fmt::format("color field '{}' is not there, expected one of: {}", field, available(geometry)));

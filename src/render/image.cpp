@@ -11,10 +11,11 @@
 namespace shapelight {
 
 void write_png(const std::filesystem::path& path, const Image& image, bool overwrite) {
-  const auto expected = static_cast<std::size_t>(std::max(0, image.width)) * static_cast<std::size_t>(std::max(0, image.height));
+  const auto expected =
+      static_cast<std::size_t>(std::max(0, image.width)) * static_cast<std::size_t>(std::max(0, image.height));
   if (expected == 0 || image.pixels.size() != expected) {
-    throw InvalidInput(fmt::format("{}: an image of {} x {} holds {} pixels, expected width x height > 0", path.string(),
-                                   image.width, image.height, image.pixels.size()));
+    throw InvalidInput(fmt::format("{}: an image of {} x {} holds {} pixels, expected width x height > 0",
+                                   path.string(), image.width, image.height, image.pixels.size()));
   }
   io::OutputFile out(path, overwrite);
   png_image header{};
@@ -29,6 +30,10 @@ void write_png(const std::filesystem::path& path, const Image& image, bool overw
   }
   out.write(bytes.data(), size);
   out.commit();
+}
+
+void paste(Image& target, const Image& source, int left, int top) {
+  for (int y = 0; y < source.height; ++y) std::copy_n(&source.at(0, y), source.width, &target.at(left, top + y));
 }
 
 Image image_grid(std::span<const Image> images, int columns, int gap, Pixel background) {
@@ -50,9 +55,7 @@ Image image_grid(std::span<const Image> images, int columns, int gap, Pixel back
     const Image& image = images[i];
     const int left = (i % columns) * (cell_width + gap) + (cell_width - image.width) / 2;
     const int top = (i / columns) * (cell_height + gap) + (cell_height - image.height) / 2;
-    for (int y = 0; y < image.height; ++y) {
-      std::copy_n(&image.at(0, y), image.width, &grid.at(left, top + y));
-    }
+    paste(grid, image, left, top);
   }
   return grid;
 }

@@ -1,7 +1,6 @@
 #include "render/raster.hpp"
 
 #include <Eigen/Geometry>
-
 #include <algorithm>
 #include <cmath>
 
@@ -19,9 +18,7 @@ struct Rows {
 };
 
 /// First and last sample whose centre lies in [low, high], both in 1/256 sample.
-Rows covered(std::int32_t low, std::int32_t high) {
-  return {(low + kHalf - 1) >> 8, (high - kHalf) >> 8};
-}
+Rows covered(std::int32_t low, std::int32_t high) { return {(low + kHalf - 1) >> 8, (high - kHalf) >> 8}; }
 
 std::array<std::uint8_t, 3> to_bytes(const Vec3f& color) {
   std::array<std::uint8_t, 3> bytes;
@@ -79,7 +76,8 @@ struct Band {
   int last_row = 0;
   std::span<Fragment> fragments;
   [[nodiscard]] std::size_t slot(int column, int row) const {
-    return static_cast<std::size_t>(row - first_row) * static_cast<std::size_t>(width) + static_cast<std::size_t>(column);
+    return static_cast<std::size_t>(row - first_row) * static_cast<std::size_t>(width) +
+           static_cast<std::size_t>(column);
   }
   [[nodiscard]] bool touches(const Rows& rows) const { return rows.first <= last_row && rows.last >= first_row; }
 };
@@ -88,7 +86,11 @@ class Rasterizer {
  public:
   Rasterizer(const Geometry& geometry, const Surface& surface, const Paint& paint, const Camera& camera,
              const RunContext& context)
-      : surface_(surface), paint_(paint), camera_(camera), rotation_(camera.axes.cast<float>()), screen_(geometry.size()) {
+      : surface_(surface),
+        paint_(paint),
+        camera_(camera),
+        rotation_(camera.axes.cast<float>()),
+        screen_(geometry.size()) {
     parallel::for_chunks(context, screen_.size(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) screen_[i] = camera.project(geometry.positions[i]);
     });
@@ -175,7 +177,8 @@ void Rasterizer::draw_triangles(const Band& band) const {
 /// Normals and colours of what is seen, once per sample. A corner whose normal is far from the triangle's belongs to
 /// a crease: the triangle's own normal takes over there, which keeps machined edges sharp.
 void Rasterizer::resolve_triangles(const Band& band, const std::vector<Index>& seen) const {
-  constexpr float kSmooth = 0.91F, kCrease = 0.77F;  // cosines of about 25 and 40 degrees
+  constexpr float kSmooth = 0.87F, kCrease = 0.74F;     // cosines of about 30 and 42 degrees
+  const bool creases = surface_.own_triangles.empty();  // a range image is too noisy to have any
   for (std::size_t slot = 0; slot < seen.size(); ++slot) {
     if (seen[slot] == kNoIndex) continue;
     const Triangle& triangle = surface_.triangles[seen[slot]];
@@ -190,8 +193,8 @@ void Rasterizer::resolve_triangles(const Band& band, const std::vector<Index>& s
     for (int k = 0; k < 3; ++k) {
       weight[k] *= corner[k]->nearness;  // perspective: weights are linear in space, not on the screen
       total += weight[k];
-      place[k] = camera_.unproject(static_cast<float>(corner[k]->x) / kSubpixels, static_cast<float>(corner[k]->y) / kSubpixels,
-                                   corner[k]->nearness);
+      place[k] = camera_.unproject(static_cast<float>(corner[k]->x) / kSubpixels,
+                                   static_cast<float>(corner[k]->y) / kSubpixels, corner[k]->nearness);
     }
     Vec3f face = (place[1] - place[0]).cross(place[2] - place[0]);
     const float face_length = face.norm();
@@ -201,7 +204,8 @@ void Rasterizer::resolve_triangles(const Band& band, const std::vector<Index>& s
     for (int k = 0; k < 3; ++k) {
       Vec3f at_corner = rotation_ * surface_.normals[triangle[k]];
       if (at_corner.dot(face) < 0.0F) at_corner = -at_corner;
-      const float smooth = std::clamp((at_corner.dot(face) - kCrease) / (kSmooth - kCrease), 0.0F, 1.0F);
+      const float smooth =
+          creases ? std::clamp((at_corner.dot(face) - kCrease) / (kSmooth - kCrease), 0.0F, 1.0F) : 1.0F;
       normal += weight[k] * (smooth * at_corner + (1.0F - smooth) * face);
       color += weight[k] / total * color_of(triangle[k]);
     }
@@ -263,7 +267,8 @@ void Rasterizer::draw_discs(const Band& band) const {
   for (const Index i : touching) {
     const Vec3f normal = facing_normal(i);
     const Vec3f color = color_of(i);
-    const float depth = 1.5F * disc_radius(i) * screen_[i].nearness / static_cast<float>(camera_.scale * camera_.distance);
+    const float depth =
+        1.5F * disc_radius(i) * screen_[i].nearness / static_cast<float>(camera_.scale * camera_.distance);
     visit_disc(band, i, [&](std::size_t slot, float nearness, float weight) {
       if (nearness < band.fragments[slot].nearness - depth) return;
       Blend& blend = blends[slot];

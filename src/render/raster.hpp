@@ -11,9 +11,9 @@ namespace shapelight::drawing {
 
 /// What is seen at one sample of the picture.
 struct Fragment {
-  float nearness = 0.0F;               ///< see ScreenPoint; 0: background
-  std::array<float, 3> normal{};       ///< camera frame, unit, towards the eye; zero where undefined
-  std::array<std::uint8_t, 3> color{}; ///< sRGB
+  float nearness = 0.0F;                ///< see ScreenPoint; 0: background
+  std::array<float, 3> normal{};        ///< camera frame, unit, towards the eye; zero where undefined
+  std::array<std::uint8_t, 3> color{};  ///< sRGB
 };
 
 struct Frame {
@@ -27,8 +27,8 @@ struct Frame {
 struct Paint {
   std::span<const Color> colors;  ///< per point; empty: `plain`
   Color plain{};
-  bool flat = false;         ///< the nearest corner's colour
-  double point_radius = 0.0; ///< [samples] 0: surface.radius
+  bool flat = false;          ///< the nearest corner's colour
+  double point_radius = 0.0;  ///< [samples] 0: surface.radius
 };
 
 /// Draws into a frame of `width` x `height` samples. The picture is cut into bands of rows; each band walks the

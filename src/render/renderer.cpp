@@ -13,7 +13,7 @@ namespace shapelight {
 namespace drawing {
 namespace {
 
-constexpr Color kClay = {0.80F, 0.80F, 0.79F};
+constexpr Color kClay = {0.79F, 0.79F, 0.78F};
 
 /// Dots as large as their number leaves room for. [pixels]
 double dot_radius(const RenderItem& item, std::size_t drawn, int width, int height) {
@@ -27,8 +27,8 @@ double dot_radius(const RenderItem& item, std::size_t drawn, int width, int heig
 void check_item(const RenderItem& item) {
   if (item.geometry == nullptr) throw InvalidInput("render: an item has no geometry");
   if (!item.colors.empty() && item.colors.size() != item.geometry->size()) {
-    throw InvalidInput(fmt::format("render: {} colors for {} points, expected one each", item.colors.size(),
-                                   item.geometry->size()));
+    throw InvalidInput(
+        fmt::format("render: {} colors for {} points, expected one each", item.colors.size(), item.geometry->size()));
   }
 }
 

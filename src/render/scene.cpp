@@ -32,12 +32,14 @@ Layout make_layout(std::span<const RenderItem> items, const RenderOptions& optio
   const int cell_height = options.height / layout.rows;
   layout.text = std::clamp(0.022 * std::min(2 * layout.panel_width, options.height), 7.0, 28.0);
   const auto any = [&](auto&& test) { return std::any_of(items.begin(), items.end(), test); };
-  if (any([](const RenderItem& i) { return !i.title.empty(); })) layout.caption_height = static_cast<int>(2.4 * layout.text);
+  if (any([](const RenderItem& i) { return !i.title.empty(); }))
+    layout.caption_height = static_cast<int>(2.4 * layout.text);
   if (any(has_bar)) layout.legend_height = static_cast<int>(3.6 * layout.text);
   layout.panel_height = cell_height - layout.caption_height - layout.legend_height;
   if (layout.panel_width < 16 || layout.panel_height < 16) {
-    throw InvalidInput(fmt::format("render: {} x {} pixels leave {} x {} for each of {} panels, expected at least 16 x 16",
-                                   options.width, options.height, layout.panel_width, layout.panel_height, count));
+    throw InvalidInput(
+        fmt::format("render: {} x {} pixels leave {} x {} for each of {} panels, expected at least 16 x 16",
+                    options.width, options.height, layout.panel_width, layout.panel_height, count));
   }
   return layout;
 }
@@ -70,8 +72,9 @@ void draw_legend(Image& image, const Legend& legend, int top, double text) {
   }
   const double side = 0.25 * image.width;
   const std::string low = number(legend.min), high = number(legend.max);
-  const double size = 0.85 * text * std::min({1.0, side / drawing::text_width(low, 0.85 * text),
-                                              side / drawing::text_width(high, 0.85 * text)});
+  const double size =
+      0.85 * text *
+      std::min({1.0, side / drawing::text_width(low, 0.85 * text), side / drawing::text_width(high, 0.85 * text)});
   drawing::draw_text(image, low, bar_left - 0.6 * text - drawing::text_width(low, size), first_baseline, size, kInk);
   drawing::draw_text(image, high, bar_right + 0.6 * text, first_baseline, size, kInk);
   draw_centered(image, legend.name, center, top + 3.0 * text, 0.9 * text, room);
@@ -83,7 +86,8 @@ bool comparable(const BoundingBox& a, const BoundingBox& b) {
   return (a.center() - b.center()).norm() <= 0.05 * size && std::abs(a.diagonal() - b.diagonal()) <= 0.10 * size;
 }
 
-std::vector<Camera> make_cameras(std::span<const RenderItem> items, const RenderOptions& options, const Layout& layout) {
+std::vector<Camera> make_cameras(std::span<const RenderItem> items, const RenderOptions& options,
+                                 const Layout& layout) {
   std::vector<Camera> cameras;
   const BoundingBox first_box = bounding_box(items.front().geometry->positions);
   for (const RenderItem& item : items) {
@@ -106,19 +110,22 @@ Image render_scene(std::span<const RenderItem> items, const RenderOptions& optio
   for (const RenderItem& item : items) drawing::check_item(item);
   const Layout layout = make_layout(items, options);
   const std::vector<Camera> cameras = make_cameras(items, options, layout);
-  std::vector<Image> panels;
+  Image picture(options.width, options.height, options.background);
   for (std::size_t i = 0; i < items.size(); ++i) {
     const auto share = [&](std::size_t k) { return static_cast<double>(k) / static_cast<double>(items.size()); };
     const RunContext part = context.phase(share(i), share(i + 1), "render");
-    const Image drawing = drawing::draw_panel(items[i], cameras[i], layout.panel_width, layout.panel_height, options, part);
+    const Image shaded =
+        drawing::draw_panel(items[i], cameras[i], layout.panel_width, layout.panel_height, options, part);
     Image panel(layout.panel_width, options.height / layout.rows, options.background);
-    std::copy(drawing.pixels.begin(), drawing.pixels.end(), panel.pixels.begin());
+    paste(panel, shaded, 0, 0);
     draw_centered(panel, items[i].title, 0.5 * panel.width, layout.panel_height + 1.6 * layout.text, layout.text,
                   0.94 * panel.width);
-    if (has_bar(items[i])) draw_legend(panel, items[i].legend, layout.panel_height + layout.caption_height, layout.text);
-    panels.push_back(std::move(panel));
+    if (has_bar(items[i]))
+      draw_legend(panel, items[i].legend, layout.panel_height + layout.caption_height, layout.text);
+    const int column = static_cast<int>(i) % layout.columns, row = static_cast<int>(i) / layout.columns;
+    paste(picture, panel, column * panel.width, row * panel.height);
   }
-  return image_grid(panels, layout.columns, 0, options.background);
+  return picture;
 }
 
 }  // namespace shapelight

@@ -15,7 +15,8 @@ constexpr std::size_t kRows = 16;  // of pixels per chunk of work
 float linear_of(std::uint8_t byte) {
   static const std::array<float, 256> table = [] {
     std::array<float, 256> t{};
-    for (std::size_t i = 0; i < t.size(); ++i) t[i] = static_cast<float>(srgb_to_linear(static_cast<double>(i) / 255.0));
+    for (std::size_t i = 0; i < t.size(); ++i)
+      t[i] = static_cast<float>(srgb_to_linear(static_cast<double>(i) / 255.0));
     return t;
   }();
   return table[byte];
@@ -40,7 +41,9 @@ class Blocks {
  public:
   Blocks(const Frame& frame, const Camera& camera, int size)
       : width(frame.width / size), height(frame.height / size), frame_(frame), camera_(camera), size_(size) {}
-  [[nodiscard]] const Fragment& at(int x, int y) const { return frame_.at(x * size_ + size_ / 2, y * size_ + size_ / 2); }
+  [[nodiscard]] const Fragment& at(int x, int y) const {
+    return frame_.at(x * size_ + size_ / 2, y * size_ + size_ / 2);
+  }
   [[nodiscard]] Vec3f place(int x, int y) const {
     const auto center = [&](int i) { return static_cast<float>(i * size_ + size_ / 2) + 0.5F; };
     return camera_.unproject(center(x), center(y), at(x, y).nearness);
@@ -66,7 +69,8 @@ Spirals make_spirals() {
       // Consecutive turns are spread over the tile by an odd multiplier.
       const double start = 2.0 * std::numbers::pi * static_cast<double>(turn * 7 % spirals.size()) / spirals.size();
       const double angle = kGoldenAngle * static_cast<double>(k) + start;
-      const double radius = (static_cast<double>(k) + 0.5 + static_cast<double>(turn) / spirals.size() * 0.5) / (kTaps + 0.5);
+      const double radius =
+          (static_cast<double>(k) + 0.5 + static_cast<double>(turn) / spirals.size() * 0.5) / (kTaps + 0.5);
       spirals[turn][k] = {static_cast<float>(radius * std::cos(angle)), static_cast<float>(radius * std::sin(angle))};
     }
   }
@@ -127,13 +131,14 @@ Vec3f lit(const Fragment& fragment, float ambient) {
   const float direct = std::max(0.0F, normal.dot(key));
   const float head = std::max(0.0F, normal.z());
   const float sky = 0.5F + 0.5F * normal.y();
-  const float diffuse = 0.62F * direct * (0.35F + 0.65F * ambient) + (0.30F * head + 0.10F + 0.20F * sky) * ambient;
+  const float diffuse = 0.74F * direct * (0.35F + 0.65F * ambient) + (0.24F * head + 0.05F + 0.17F * sky) * ambient;
   const float gloss = std::pow(std::max(0.0F, normal.dot(half_way)), 28.0F);
-  return albedo * (1.08F * diffuse) + Vec3f::Constant(0.045F * gloss * ambient);
+  return albedo * (1.06F * diffuse) + Vec3f::Constant(0.05F * gloss * ambient);
 }
 
 /// Draws the dots that touch rows [first, first + rows) over those rows.
-void draw_dots(std::span<const Dot> dots, const DotStyle& style, int width, int first, int rows, std::vector<Vec3f>& light) {
+void draw_dots(std::span<const Dot> dots, const DotStyle& style, int width, int first, int rows,
+               std::vector<Vec3f>& light) {
   const auto bytes = [](float c) { return static_cast<std::uint8_t>(c * 255.0F + 0.5F); };
   const Vec3f inside = linear_color({bytes(style.color[0]), bytes(style.color[1]), bytes(style.color[2])});
   const Vec3f rim = 0.10F * inside;
@@ -180,7 +185,7 @@ std::vector<float> ambient_light(const Frame& frame, const Camera& camera, int s
   for_pixels([&](int x, int y, std::size_t slot) {
     const auto& spiral = spirals[static_cast<std::size_t>((y % kPattern) * kPattern + x % kPattern)];
     const float hidden = hidden_share(blocks, x, y, reach, reach_pixels, spiral);
-    raw[slot] = std::max(0.0F, 1.0F - static_cast<float>(2.2 * strength) * hidden);
+    raw[slot] = std::max(0.0F, 1.0F - static_cast<float>(2.6 * strength) * hidden);
   });
   const float jump = 0.5F * reach / static_cast<float>(camera.distance);
   for_pixels([&](int x, int y, std::size_t slot) { ambient[slot] = blurred(blocks, raw, x, y, jump); });
@@ -189,7 +194,8 @@ std::vector<float> ambient_light(const Frame& frame, const Camera& camera, int s
 
 std::vector<Dot> visible_dots(std::span<const Vec3> points, const Frame& frame, const Camera& camera) {
   // A dot lies on the surface, give or take the spacing of the points: about 0.6 % of the view.
-  const auto tolerance = static_cast<float>(0.006 * std::min(frame.width, frame.height) / (camera.scale * camera.distance));
+  const auto tolerance =
+      static_cast<float>(0.006 * std::min(frame.width, frame.height) / (camera.scale * camera.distance));
   std::vector<Dot> dots;
   for (const Vec3& point : points) {
     const ScreenPoint p = camera.project(point);
@@ -216,7 +222,8 @@ Image shade(const Frame& frame, std::span<const float> ambient, std::span<const 
           for (int x = 0; x < frame.width; ++x) {
             const Fragment& fragment = frame.at(x, first + y);
             if (fragment.nearness == 0.0F) continue;
-            const std::size_t pixel = static_cast<std::size_t>((first + y) / supersample) * image.width + x / supersample;
+            const std::size_t pixel =
+                static_cast<std::size_t>((first + y) / supersample) * image.width + x / supersample;
             light[static_cast<std::size_t>(y) * frame.width + x] = lit(fragment, ambient[pixel]);
           }
         }

@@ -1,11 +1,11 @@
 #include "render/surface.hpp"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/Geometry>
-
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/parallel.hpp"
@@ -105,7 +105,9 @@ std::vector<Triangle> triangulate_grid(const Geometry& geometry) {
     const Index i = grid.pixel[static_cast<std::size_t>(row) * grid.width + column];
     return i != kNoIndex && geometry.positions[i].allFinite() ? i : kNoIndex;
   };
-  const auto reach = [&](Index i) { return geometry.viewpoint ? (geometry.positions[i] - *geometry.viewpoint).norm() : 1.0; };
+  const auto reach = [&](Index i) {
+    return geometry.viewpoint ? (geometry.positions[i] - *geometry.viewpoint).norm() : 1.0;
+  };
   const auto length = [&](Index i, Index j) { return (geometry.positions[i] - geometry.positions[j]).norm(); };
   std::vector<double> steps;
   for (std::uint32_t row = 0; row < grid.height; ++row) {
@@ -143,9 +145,14 @@ std::vector<Triangle> triangulate_grid(const Geometry& geometry) {
 std::vector<Vec3f> triangle_normals(std::span<const Vec3> positions, std::span<const Triangle> triangles) {
   std::vector<Vec3> sums(positions.size(), Vec3::Zero());
   for (const Triangle& t : triangles) {
-    const Vec3 normal = (positions[t[1]] - positions[t[0]]).cross(positions[t[2]] - positions[t[0]]);
-    if (!normal.allFinite()) continue;
-    for (const Index i : t) sums[i] += normal;
+    const std::array<Vec3, 3> side = {positions[t[1]] - positions[t[0]], positions[t[2]] - positions[t[1]],
+                                      positions[t[0]] - positions[t[2]]};
+    const Vec3 normal = side[0].cross(side[1]);
+    const double twice_area = normal.norm();
+    if (!(twice_area > 0.0) || !std::isfinite(twice_area)) continue;
+    for (std::size_t k = 0; k < 3; ++k) {
+      sums[t[k]] += normal * (std::atan2(twice_area, -side[k].dot(side[(k + 2) % 3])) / twice_area);
+    }
   }
   std::vector<Vec3f> normals(positions.size());
   std::transform(sums.begin(), sums.end(), normals.begin(), unit_or_zero);

@@ -22,7 +22,8 @@ Surface make_surface(const RenderItem& item, const RunContext& context);
 /// the median step between pixels, which grows with the distance from the sensor.
 std::vector<Triangle> triangulate_grid(const Geometry& geometry);
 
-/// Unit vertex normals, weighted by the areas of the triangles around.
+/// Unit vertex normals, weighted by the angles of the triangles around, so that how a flat part is
+/// cut into triangles does not matter.
 std::vector<Vec3f> triangle_normals(std::span<const Vec3> positions, std::span<const Triangle> triangles);
 
 }  // namespace shapelight::drawing

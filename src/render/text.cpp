@@ -9,6 +9,7 @@ namespace {
 
 /// Strokes of ' ' to '~': polylines through points "xy" on a grid 5 wide and 10 high; the baseline is y = 2, small
 /// letters reach 6, capitals 8. A point given twice is a dot.
+// clang-format off
 constexpr std::array<std::string_view, 95> kGlyphs = {
     "", "0804 0202", "0806 2826", "1218 3238 0444 0646", "473818070615354443321203 2921",
     "0248 0818170708 3242433332", "4206071827260403122244", "0806", "19070311", "09171301", "2428 0547 0745",
@@ -26,6 +27,7 @@ constexpr std::array<std::string_view, 95> kGlyphs = {
     "160503122233352616", "0600 0312223335261605", "3630 3322120305162635", "0602 051626", "35261605142433221203",
     "181322 0626", "0603122233 3632", "062246", "0612253246", "0236 0632", "0603122233 3631201001", "06360232",
     "29181605141221", "0901", "09181625141201", "04153445"};
+// clang-format on
 constexpr double kBaseline = 2.0;
 constexpr double kCapital = 6.0;      // grid units above the baseline
 constexpr double kHalfStroke = 0.43;  // grid units

@@ -1,7 +1,6 @@
-#include <Eigen/Geometry>
-
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -24,30 +23,34 @@ constexpr std::array<double, 3> kFromAbove = {1.0, 0.3, 1.1};
 
 bool is_terrain(const Vec3& extent) { return extent.z() < 0.25 * std::min(extent.x(), extent.y()); }
 
+/// The sensor, unless it stands amid its points, as a spinning lidar does: that is no place to look from.
+/// An organised PCD whose header leaves the viewpoint at the origin was taken from there.
+std::optional<Vec3> outside_sensor(const Geometry& geometry, const BoundingBox& box) {
+  std::optional<Vec3> sensor = geometry.viewpoint;
+  if (!sensor && geometry.grid && geometry.format == "pcd") sensor = Vec3::Zero();
+  if (sensor && !((*sensor - box.center()).norm() > 0.35 * box.diagonal())) sensor.reset();
+  return sensor;
+}
+
 Orientation orientation_of(const Geometry& geometry, const BoundingBox& box) {
   const Vec3 y = Vec3::UnitY();
   const Vec3 z = Vec3::UnitZ();
-  if (geometry.viewpoint && geometry.grid) {
-    const Vec3 into = box.center() - *geometry.viewpoint;
+  if (const auto sensor = outside_sensor(geometry, box); sensor && geometry.grid) {
+    const Vec3 into = box.center() - *sensor;
     if (into.z() > 0.7 * into.norm()) return {-y, -z};
     if (into.z() < -0.7 * into.norm()) return {y, z};
     return {z, -y};
   }
   if (geometry.grid && geometry.format != "ptx") return {y, z};
   const Vec3 extent = box.max - box.min;
-  const bool laser = geometry.format == "las" || geometry.format == "ptx" || geometry.format == "xyz";
+  const bool laser = geometry.format == "las" || geometry.format == "ptx";
   const bool statue = extent.z() > 1.3 * std::max(extent.x(), extent.y());
   return laser || statue || is_terrain(extent) ? Orientation{z, -y} : Orientation{y, z};
 }
 
 Vec3 automatic_eye(const Geometry& geometry, const BoundingBox& box, const Orientation& o) {
-  if (geometry.viewpoint) {
-    const Vec3 eye = *geometry.viewpoint - box.center();
-    // A sensor amid its points, as in a spinning lidar, is no place to look from.
-    if (eye.norm() > 0.35 * box.diagonal()) return eye;
-  } else if (geometry.grid && geometry.format != "ptx") {
-    return o.front;
-  }
+  if (const auto sensor = outside_sensor(geometry, box)) return *sensor - box.center();
+  if (geometry.grid && geometry.format != "ptx") return o.front;
   const auto& share = is_terrain(box.max - box.min) && o.up == Vec3::UnitZ() ? kFromAbove : kThreeQuarter;
   return share[0] * o.front + share[1] * o.right() + share[2] * o.up;
 }
@@ -77,7 +80,8 @@ Vec3 parse_eye(std::string_view text) {
   }
   if (!good || eye.norm() == 0.0) {
     throw InvalidInput(fmt::format(
-        "view '{}' is not understood, expected auto, front, back, left, right, top, bottom, iso, or a direction x,y,z", whole));
+        "view '{}' is not understood, expected auto, front, back, left, right, top, bottom, iso, or a direction x,y,z",
+        whole));
   }
   return eye;
 }
@@ -91,6 +95,7 @@ View parse_view(std::string_view text, const Geometry& geometry) {
   const Vec3 eye = text == "auto" ? automatic_eye(geometry, box, o) : named ? *named : parse_eye(text);
   View view;
   view.direction = -eye.normalized();
+  if (text == "auto" && geometry.grid && outside_sensor(geometry, box)) view.distance = eye.norm();
   // Straight from above or below the front points down or up the picture.
   Vec3 up = o.up - o.up.dot(view.direction) * view.direction;
   if (up.norm() < 1e-6) up = view.direction.dot(o.up) < 0.0 ? Vec3(-o.front) : o.front;

@@ -25,8 +25,8 @@ struct FieldColors {
 
 /// Colours of a field of one value per point. The map follows from the field: shape_index and reflectance, and every
 /// field whose 1st and 99th percentiles differ in sign, diverge around 0; labels (columns named segment,
-/// label, class or classification) are categorical; all others are sequential. The range is value_range(), symmetric when
-/// diverging, and exactly [-1, 1] for shape_index.
+/// label, class or classification) are categorical; all others are sequential. The range is value_range(), symmetric
+/// when diverging, and exactly [-1, 1] for shape_index.
 [[nodiscard]] FieldColors color_by_values(std::span<const double> values, std::string_view name);
 
 /// Colours by a named column of geometry.attributes, or by "rgb" (columns red, green, blue: 8 or 16 bits, or floats),

@@ -28,8 +28,12 @@ struct Image {
 
 /// Writes an 8-bit RGB PNG: to a temporary file that is then renamed, so the target is either old or complete. The
 /// same image gives the same bytes.
-/// Throws InvalidInput (no pixels, or their number is not width x height), WriteError (exists and overwrite is off, ...).
+/// Throws InvalidInput (no pixels, or their number is not width x height), WriteError (exists and overwrite is off,
+/// ...).
 void write_png(const std::filesystem::path& path, const Image& image, bool overwrite = false);
+
+/// Copies `source` into `target` with its upper left pixel at (left, top). Pre: it fits.
+void paste(Image& target, const Image& source, int left, int top);
 
 /// Places images row by row in a grid of `columns`, each centred in a cell as large as the largest image.
 /// Throws InvalidInput when there is none, or columns < 1, or gap < 0.
