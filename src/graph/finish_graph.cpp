@@ -5,10 +5,12 @@
 
 #include "core/parallel.hpp"
 #include "graph/components.hpp"
+#include "shapelight/spatial/kd_tree.hpp"
 
 namespace shapelight {
 namespace {
 
+constexpr double kNearSurface = 3.0;  // [mean edge lengths] an isolated vertex farther from all others is a stray
 constexpr double kFlat = 0.01;  // share of |n . (p - c)| that must agree on a side for the shape to decide
 
 struct ComponentSide {
@@ -18,6 +20,23 @@ struct ComponentSide {
   double magnitude = 0.0;  // sum of area |p - c|
   double up = 0.0;         // sum of area n_z
 };
+
+// Isolated vertices that lie on the surface all the same, such as those that no triangle of a mesh uses, are no strays.
+void flag_isolated(SurfaceGraph& graph) {
+  std::vector<Index> isolated;
+  std::vector<Vec3> connected;
+  for (Index i = 0; i < graph.size(); ++i) {
+    if (graph.neighbors_of(i).empty()) isolated.push_back(i);
+    else connected.push_back(graph.position[i]);
+  }
+  if (isolated.empty()) return;
+  const KdTree tree(connected);
+  const double reach = kNearSurface * graph.mean_edge_length;
+  for (const Index i : isolated) {
+    const Neighbor nearest = tree.nearest(graph.position[i]);
+    graph.outlier[i] = nearest.index == kNoIndex || nearest.distance_sq > reach * reach;
+  }
+}
 
 }  // namespace
 
@@ -32,11 +51,11 @@ void finish_graph(BuiltGraph& built, const RunContext& context) {
   graph.mean_edge_length = graph.neighbors.empty() ? 0.0 : length_sum / static_cast<double>(graph.neighbors.size());
   graph.total_area = parallel::sum(context, n, [&](std::size_t i) { return graph.area[i]; });
 
+  flag_isolated(graph);
   GraphDiagnostics& counts = built.diagnostics;
   const std::vector<Index> root = component_roots(graph);
   for (std::size_t i = 0; i < n; ++i) {
     if (graph.neighbors_of(i).empty()) {
-      graph.outlier[i] = 1;
       ++counts.isolated_vertices;
     } else if (root[i] == i) {
       ++counts.components;

@@ -8,7 +8,7 @@
 namespace shapelight {
 
 /// Fills what all builders share once edges, areas, boundary and outlier flags are there: totals, mean edge length,
-/// the flag of isolated vertices, and the counts.
+/// the flag of isolated vertices far from all others, and the counts.
 void finish_graph(BuiltGraph& built, const RunContext& context);
 
 /// Turns the normals of every connected component, as a whole, towards the viewpoint (input frame) or, without one,

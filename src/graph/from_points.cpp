@@ -13,10 +13,11 @@
 namespace shapelight {
 namespace {
 
-constexpr double kStrayLocal = 2.5;    // r_k against the median r_k of the neighbours
-constexpr double kStrayGlobal = 6.0;   // r_k against the median of the cloud; alone it would flag the sparse far range...
-constexpr double kStraySupport = 1.5;  // ...so a stray also stands out among its neighbours...
-constexpr std::size_t kStrayGroup = 50;  // [points] ...or belongs to a small group apart from everything
+constexpr double kSparseLocal = 2.5;     // r_k against the median r_k of the neighbours
+constexpr double kSparseGlobal = 6.0;    // r_k against the median r_k of the cloud
+constexpr std::size_t kStrayFans = 2;    // a stray is near to few dense points; sparse surface points to many...
+constexpr double kStrayHeight = 0.3;     // ...and it stands off their tangent planes: mean |n'.d| / |d|
+constexpr std::size_t kStrayGroup = 50;  // [points] small groups apart from everything are strays as well
 constexpr double kBoundaryOffset = 0.4; // |centroid of neighbours| / mean distance: 0 inside, 0.64 on a straight border
 constexpr int kWeightLevels = 1 << 16;  // resolution of 1 - |n.n'| in the spanning tree
 
@@ -121,28 +122,57 @@ void orient_along_spanning_tree(SurfaceGraph& graph) {
   }
 }
 
-void flag_strays(SurfaceGraph& graph, const NearestTable& nearest, std::span<const double> radius,
-                 const RunContext& context) {
-  const std::size_t n = graph.size();
+// Sparse points: r_k stands out. By itself that is no fault: scans thin out with range, meshes with curvature.
+enum class Sparse : std::uint8_t { No, Locally, Globally };
+
+std::vector<Sparse> find_sparse(const NearestTable& nearest, std::span<const double> radius, const RunContext& context) {
+  const std::size_t n = radius.size();
   std::vector<double> sorted(radius.begin(), radius.end());
-  std::nth_element(sorted.begin(), sorted.begin() + n / 2, sorted.end());
+  std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(n / 2), sorted.end());
   const double global = sorted[n / 2];
-  const std::vector<Index> root = component_roots(graph);
-  std::vector<Index> component_size(n, 0);
-  for (const Index r : root) ++component_size[r];
-  const std::size_t group = std::min(kStrayGroup, n / 10);
+  std::vector<Sparse> sparse(n, Sparse::No);
   parallel::for_chunks(context, n, [&](std::size_t begin, std::size_t end) {
     std::vector<double> around;
     for (std::size_t i = begin; i < end; ++i) {
       around.clear();
       for (const Index j : nearest.of(i)) around.push_back(radius[j]);
       if (around.empty()) continue;
-      std::nth_element(around.begin(), around.begin() + around.size() / 2, around.end());
-      const double local = around[around.size() / 2];
-      const bool apart = radius[i] > kStraySupport * local || component_size[root[i]] <= group;
-      graph.outlier[i] = radius[i] > kStrayLocal * local || (radius[i] > kStrayGlobal * global && apart);
+      std::nth_element(around.begin(), around.begin() + static_cast<std::ptrdiff_t>(around.size() / 2), around.end());
+      if (radius[i] > kSparseGlobal * global) sparse[i] = Sparse::Globally;
+      else if (radius[i] > kSparseLocal * around[around.size() / 2]) sparse[i] = Sparse::Locally;
     }
   });
+  return sparse;
+}
+
+double height_over(const SurfaceGraph& graph, std::span<const Index> nearest, std::size_t i) {
+  double sum = 0.0;
+  for (const Index j : nearest) {
+    const Vec3 d = graph.position[i] - graph.position[j];
+    sum += std::abs(graph.normal[j].dot(d)) / d.norm();
+  }
+  return sum / static_cast<double>(nearest.size());
+}
+
+void flag_strays(SurfaceGraph& graph, const NearestTable& nearest, std::span<const double> radius,
+                 const RunContext& context) {
+  const std::size_t n = graph.size();
+  const std::vector<Sparse> sparse = find_sparse(nearest, radius, context);
+  std::vector<Index> fans(n, 0);  // dense points that count this one among their nearest
+  for (std::size_t i = 0; i < n; ++i) {
+    if (sparse[i] != Sparse::No) continue;
+    for (const Index j : nearest.of(i)) ++fans[j];
+  }
+  const std::vector<Index> root = component_roots(graph);
+  std::vector<Index> component_size(n, 0);
+  for (const Index r : root) ++component_size[r];
+  const std::size_t group = std::min(kStrayGroup, n / 10);
+  for (std::size_t i = 0; i < n; ++i) {
+    if (sparse[i] == Sparse::No) continue;
+    const bool apart = sparse[i] == Sparse::Globally && component_size[root[i]] <= group;
+    const bool floats = fans[i] <= kStrayFans && height_over(graph, nearest.of(i), i) > kStrayHeight;
+    graph.outlier[i] = apart || floats;
+  }
 }
 
 }  // namespace

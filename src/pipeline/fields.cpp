@@ -11,7 +11,7 @@ namespace {
 
 // Noise in mean edge lengths from which another estimator is better (docs/stages.md has the measurements).
 constexpr double kCleanCloud = 0.03;
-constexpr double kNoisy = 0.05;
+constexpr double kNoisy = 0.08;
 constexpr int kNoisyPasses = 4;
 
 struct Plan {

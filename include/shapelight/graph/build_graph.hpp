@@ -33,7 +33,8 @@ struct BuiltGraph {
 /// Edges and areas of a triangle mesh. Duplicate positions become one vertex (seams close); triangles with a repeated
 /// vertex or no area are left out and counted; edges of one triangle make boundary vertices; edges of more than two are
 /// counted and kept. Normals are area-weighted; a closed component that winds inwards gets its normals turned outwards.
-/// Non-finite positions and the triangles at them are left out. Vertices without a triangle stay, isolated and flagged.
+/// Non-finite positions and the triangles at them are left out. Vertices without a triangle stay, isolated; those farther than
+/// three mean edge lengths from the surface are flagged.
 /// Throws InvalidInput when a triangle names a vertex that is not there. Cost: O(n), about 150 bytes per vertex.
 [[nodiscard]] BuiltGraph graph_from_mesh(std::span<const Vec3> positions, std::span<const Triangle> triangles,
                                          const RunContext& context = {});
@@ -48,8 +49,9 @@ struct BuiltGraph {
 /// Symmetric k-nearest-neighbour graph of a raw cloud (i ~ j when either is among the other's k nearest). Area is
 /// pi r_k^2 / k. Normals by principal components of the k nearest, oriented along the minimum spanning tree of
 /// 1 - |n_i . n_j| (Hoppe et al. 1992) and, per component, towards the viewpoint or, without one, outwards.
-/// Boundary: the neighbours' centroid lies off to one side. Strays: r_k above 2.5 times the median of the neighbours', or
-/// above 6 times the median of the cloud for a point that stands out or belongs to a small group apart.
+/// Boundary: the neighbours' centroid lies off to one side. Strays: points with r_k above 2.5 times the
+/// median of the neighbours', or 6 times that of the cloud, that few dense points count among their nearest and that
+/// stand off their neighbours' tangent planes; and small groups apart from everything.
 /// Cost: O(n log n), dominated by the neighbour search.
 [[nodiscard]] BuiltGraph graph_from_points(std::span<const Vec3> positions, const std::optional<Vec3>& viewpoint,
                                            const GraphOptions& options = {}, const RunContext& context = {});

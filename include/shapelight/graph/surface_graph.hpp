@@ -23,7 +23,7 @@ struct SurfaceGraph {
   std::vector<Vec3> normal;               ///< n: unit, consistently oriented; zero where undefined
   std::vector<double> area;               ///< n: [input length unit squared] surface that the vertex stands for
   std::vector<std::uint8_t> boundary;     ///< n: 1 on the border of an open surface
-  std::vector<std::uint8_t> outlier;      ///< n: 1 for isolated vertices and strays; samplers choose them last
+  std::vector<std::uint8_t> outlier;      ///< n: 1 for strays; samplers choose them last
   std::vector<Index> global_id;           ///< n: input index of the vertex (lowest of its duplicates)
   std::vector<Index> vertex_of_point;     ///< input index -> vertex; kNoIndex for a non-finite point
   Vec3 origin = Vec3::Zero();             ///< centre of the bounding box, input frame
@@ -41,7 +41,7 @@ struct GraphDiagnostics {
   std::size_t non_finite_points = 0;
   std::size_t duplicate_points = 0;      ///< points at exactly the place of an earlier one
   std::size_t isolated_vertices = 0;     ///< vertices without any neighbour
-  std::size_t outliers = 0;              ///< flagged strays, isolated ones included
+  std::size_t outliers = 0;              ///< flagged strays; isolated vertices only when far from the surface
   std::size_t non_manifold_edges = 0;    ///< edges of more than two triangles
   std::size_t degenerate_triangles = 0;  ///< left out: a repeated vertex or no area
   std::size_t boundary_vertices = 0;
