@@ -84,6 +84,9 @@ class Run {
     std::chrono::steady_clock::time_point start_;
   };
 
+  // Throws when the JSON report would be written onto this file.
+  void check_report(const std::filesystem::path& path) const;
+
   std::string command_;
   CommonOptions options_;
   std::stop_token stop_;

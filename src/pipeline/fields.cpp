@@ -130,15 +130,18 @@ FieldsResult add_fields(Geometry geometry, const FieldsOptions& options, const R
 
   constexpr float kMissing = std::numeric_limits<float>::quiet_NaN();
   const auto add = [&](const char* name, const std::vector<double>& values) {
-    if (!values.empty()) geometry.attributes.set(spread(built.graph, values, name, kMissing));
+    geometry.attributes.set(spread(built.graph, values, name, kMissing));
   };
   add("shape_index", fields.shape_index);
   add("curvedness", fields.curvedness);
-  add("illumination", fields.illumination);
-  add("reflectance", fields.reflectance);
-  if (!fields.segment.empty()) geometry.attributes.set(spread_labels(built.graph, fields.segment));
+  if (options.retinex) {
+    add("illumination", fields.illumination);
+    add("reflectance", fields.reflectance);
+  }
+  if (options.segment) geometry.attributes.set(spread_labels(built.graph, fields.segment));
   add("importance", fields.importance);
   result.geometry = std::move(geometry);
+  context.check();
   context.report(1.0);
   return result;
 }

@@ -142,6 +142,7 @@ SampleResult sample(const Geometry& geometry, const SampleSize& size, const Samp
     result.indices.insert(result.indices.end(), choice.last_resort.begin(),
                           choice.last_resort.begin() + static_cast<std::ptrdiff_t>(result.last_resort));
   }
+  context.check();
   context.report(1.0);
   return result;
 }

@@ -32,24 +32,30 @@ std::vector<bool> local_turns(double share, std::size_t count) {
   return turns;
 }
 
-// The definition, in O(n count): the largest w d^2 on local turns, the largest d^2 on the others, ties by index.
+// The definition, in O(n count): the largest w d^2 on local turns, the largest d^2 on the others, ties by index. At first
+// d is the distance to the centroid.
 std::vector<Index> brute_force(const std::vector<Vec3>& points, const std::vector<double>& weights, double share,
                                std::size_t count) {
-  std::vector<double> nearest(points.size(), HUGE_VAL);
-  std::vector<Index> picks = {static_cast<Index>(std::max_element(weights.begin(), weights.end()) - weights.begin())};
+  Vec3 centroid = Vec3::Zero();
+  for (const Vec3& p : points) centroid += p;
+  centroid /= static_cast<double>(points.size());
+  std::vector<double> nearest;
+  for (const Vec3& p : points) nearest.push_back(distance_sq(p, centroid));
+  std::vector<Index> picks;
   const std::vector<bool> turns = local_turns(share, count);
-  while (true) {
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      nearest[i] = std::min(nearest[i], distance_sq(points[i], points[picks.back()]));
-    }
-    if (picks.size() == count) return picks;
+  while (picks.size() < count) {
     std::vector<double> score = nearest;
     if (turns[picks.size()]) {
       for (std::size_t i = 0; i < points.size(); ++i) score[i] *= weights[i];
       if (*std::max_element(score.begin(), score.end()) == 0.0) score = nearest;
     }
     picks.push_back(static_cast<Index>(std::max_element(score.begin(), score.end()) - score.begin()));
+    if (picks.size() == 1) nearest.assign(points.size(), HUGE_VAL);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      nearest[i] = std::min(nearest[i], distance_sq(points[i], points[picks.back()]));
+    }
   }
+  return picks;
 }
 
 std::vector<double> random_weights(std::size_t count) {
