@@ -142,7 +142,7 @@ FieldsResult add_fields(Geometry geometry, const FieldsOptions& options, const R
   add("importance", fields.importance);
   result.geometry = std::move(geometry);
   context.check();
-  context.report(1.0);
+  context.report(1.0, "done");
   return result;
 }
 

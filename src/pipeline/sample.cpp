@@ -143,7 +143,7 @@ SampleResult sample(const Geometry& geometry, const SampleSize& size, const Samp
                           choice.last_resort.begin() + static_cast<std::ptrdiff_t>(result.last_resort));
   }
   context.check();
-  context.report(1.0);
+  context.report(1.0, "done");
   return result;
 }
 
