@@ -14,20 +14,21 @@ namespace {
 
 struct RenderArguments {
   std::vector<std::string> inputs;
-  std::string output, dots, view = "auto";
-  std::vector<std::string> colors;
+  std::string output, view = "auto";
+  std::vector<std::string> colors, dots;
   double point_size = 0.0;
   double dot_size = 0.0;
   CommonOptions common;
 };
 
+std::string stem(const std::string& path) { return std::filesystem::path(path).stem().string(); }
+
 // One panel: an input, coloured by one field ("none": neutral).
 RenderItem make_panel(const Geometry& geometry, const std::string& name, const std::string& color,
-                      const std::vector<Vec3>& dots, const RenderArguments& arguments) {
+                      const RenderArguments& arguments) {
   RenderItem item;
   item.geometry = &geometry;
   item.title = color == "none" ? name : fmt::format("{}: {}", name, color);
-  item.dots = dots;
   item.point_radius = 0.5 * arguments.point_size;
   item.dot_radius = 0.5 * arguments.dot_size;
   if (color != "none") {
@@ -51,15 +52,23 @@ int run_render(const RenderArguments& arguments, const DescribedFlags<RenderOpti
 
   std::vector<Geometry> geometries;
   for (const std::string& input : arguments.inputs) geometries.push_back(run.read(input));
-  std::vector<Vec3> dots;
-  if (!arguments.dots.empty()) dots = run.read(arguments.dots).positions;
+  std::vector<std::vector<Vec3>> dots;
+  for (const std::string& path : arguments.dots) dots.push_back(run.read(path).positions);
   run.check_output(arguments.output, false);
 
+  // Panels: every input in every colour, under every set of dots.
   std::vector<RenderItem> panels;
   const std::vector<std::string> colors = arguments.colors.empty() ? std::vector<std::string>{"none"} : arguments.colors;
   for (std::size_t i = 0; i < geometries.size(); ++i) {
-    const std::string name = std::filesystem::path(arguments.inputs[i]).stem().string();
-    for (const std::string& color : colors) panels.push_back(make_panel(geometries[i], name, color, dots, arguments));
+    for (const std::string& color : colors) {
+      const RenderItem plain = make_panel(geometries[i], stem(arguments.inputs[i]), color, arguments);
+      if (dots.empty()) panels.push_back(plain);
+      for (std::size_t d = 0; d < dots.size(); ++d) {
+        panels.push_back(plain);
+        panels.back().dots = dots[d];
+        if (dots.size() > 1) panels.back().title += fmt::format(", {}", stem(arguments.dots[d]));
+      }
+    }
   }
   const Image image = run.timed("render", [&] { return render_scene(panels, options, run.context()); });
   if (!arguments.common.dry_run) write_png(arguments.output, image, arguments.common.force);
@@ -86,7 +95,10 @@ Command add_render_command(CLI::App& app) {
       ->delimiter(',');
   command->add_option("--view", arguments->view, "auto, front, back, left, right, top, bottom, iso, or x,y,z of the eye. (auto)")
       ->type_name("FROM");
-  command->add_option("--dots", arguments->dots, "Points to draw on top of every panel, such as a sample.")->type_name("FILE");
+  command
+      ->add_option("--dots", arguments->dots, "Points to draw on top, such as a sample; of several files, a panel each.")
+      ->type_name("FILE")
+      ->delimiter(',');
   command->add_option("--point-size", arguments->point_size, "Diameter of a cloud's points [pixels]; 0: by their spacing.");
   command->add_option("--dot-size", arguments->dot_size, "Diameter of the dots [pixels]; 0: by their number.");
   auto flags = std::make_shared<DescribedFlags<RenderOptions>>(

@@ -77,25 +77,37 @@ Run::Run(std::string command, const CommonOptions& common_options, std::stop_tok
 }
 
 RunContext Run::context() {
-  RunContext context{options_.threads, stop_, {}};
   const bool as_json = options_.progress == "json";
   const bool shown = as_json || options_.progress == "always" ||
                      (options_.progress == "auto" && !options_.quiet && isatty(STDERR_FILENO) != 0);
-  if (!shown) return context;
-  context.progress = [this, as_json, last = -1](double fraction, std::string_view phase) mutable {
+  RunContext context{options_.threads, stop_, {}};
+  context.progress = [this, as_json, shown, last = -1](double fraction, std::string_view phase) mutable {
+    enter_phase(phase);
     const int percent = static_cast<int>(100.0 * fraction);
-    if (percent <= last) return;
+    if (!shown || percent <= last) return;
     last = percent;
     if (as_json) {
       fmt::print(stderr, "{}\n", nlohmann::ordered_json{{"fraction", fraction}, {"phase", phase}}.dump());
     } else {
       fmt::print(stderr, "\r\033[K{:3d} %  {}", percent, phase);
-      std::fflush(stderr);
-      progress_shown_ = true;
       if (percent >= 100) fmt::print(stderr, "\r\033[K");
+      std::fflush(stderr);
     }
   };
   return context;
+}
+
+void Run::enter_phase(std::string_view phase) {
+  if (phase == phase_) return;
+  const auto now = std::chrono::steady_clock::now();
+  if (!phase_.empty()) add_seconds(phase_, std::chrono::duration<double>(now - phase_start_).count());
+  phase_ = phase;
+  phase_start_ = now;
+}
+
+void Run::add_seconds(const std::string& name, double seconds) {
+  const double before = seconds_.contains(name) ? seconds_[name].get<double>() : 0.0;
+  seconds_[name] = before + seconds;
 }
 
 Geometry Run::read(const std::filesystem::path& path) {
@@ -168,8 +180,8 @@ void Run::warn(const GraphDiagnostics& counts) {
   };
   note(counts.non_finite_points, "points without a finite position: never chosen");
   note(counts.duplicate_points, "points at the place of another one: chosen last");
-  note(counts.isolated_vertices, "points without a neighbour: chosen last");
-  note(counts.outliers - std::min(counts.outliers, counts.isolated_vertices), "points flagged as strays: chosen last");
+  note(counts.isolated_vertices, "points without a neighbour: never chosen for detail");
+  note(counts.outliers, "points flagged as strays: chosen last");
   note(counts.degenerate_triangles, "triangles with a repeated vertex or no area: ignored");
   note(counts.non_manifold_edges, "edges of more than two triangles");
 }
@@ -224,8 +236,8 @@ void Run::finish() {
 }
 
 Run::Timer::~Timer() {
-  const double before = run_.seconds_.contains(name_) ? run_.seconds_[name_].get<double>() : 0.0;
-  run_.seconds_[name_] = before + seconds_since(start_);
+  run_.enter_phase({});
+  run_.add_seconds(name_, seconds_since(start_));
 }
 
 }  // namespace shapelight::cli

@@ -13,7 +13,7 @@
 namespace shapelight {
 namespace {
 
-constexpr double kSparseLocal = 2.5;     // r_k against the median r_k of the neighbours
+constexpr double kSparseLocal = 4.0;     // r_k against the median r_k of the neighbours
 constexpr double kSparseGlobal = 6.0;    // r_k against the median r_k of the cloud
 constexpr std::size_t kStrayFans = 2;    // a stray is near to few dense points; sparse surface points to many...
 constexpr double kStrayHeight = 0.3;     // ...and it stands off their tangent planes: mean |n'.d| / |d|

@@ -64,7 +64,7 @@ TEST(Sample, EveryRatioIsExact) {
     const Geometry geometry = read_data(file);
     std::size_t usable = 0;
     for (const Vec3& p : geometry.positions) usable += p.allFinite();
-    for (const double r : {1e-9, 0.001, 0.02, 0.05, 0.1, 1.0 / 3.0, 0.5, 0.9, 1.0}) {
+    for (const double r : {1e-9, 0.001, 0.05, 1.0 / 3.0, 1.0}) {
       SCOPED_TRACE(std::string(file) + " " + std::to_string(r));
       const SampleResult result = sample(geometry, ratio(r), sample_preset(Preset::Fast));
       EXPECT_EQ(result.usable, usable);
