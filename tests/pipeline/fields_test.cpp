@@ -65,7 +65,7 @@ TEST(Fields, ValuesAreInTheirRanges) {
           ASSERT_GE(fields.illumination[i], 0.0);
           ASSERT_LE(fields.illumination[i], 1.0);
         }
-        if (options.segment) ASSERT_LT(fields.segment[i], fields.num_segments);
+        ASSERT_TRUE(!options.segment || fields.segment[i] < fields.num_segments);
       }
     }
   }
