@@ -40,7 +40,8 @@ std::uint64_t peak_memory_bytes() {
 
 bool same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
   std::error_code ignored;
-  return std::filesystem::equivalent(a, b, ignored);
+  return std::filesystem::equivalent(a, b, ignored) ||
+         std::filesystem::absolute(a).lexically_normal() == std::filesystem::absolute(b).lexically_normal();
 }
 
 }  // namespace
@@ -127,6 +128,7 @@ Geometry Run::read(const std::filesystem::path& path) {
                      {"faces", geometry.triangles.size()},
                      {"kind", geometry_kind_name(geometry.kind())}});
   input_paths_.push_back(path);
+  check_report(path);
   return geometry;
 }
 
@@ -139,6 +141,12 @@ void Run::check_output(const std::filesystem::path& path, bool is_geometry) cons
   if (!options_.force && std::filesystem::exists(path)) {
     throw WriteError(fmt::format("{}: exists already, not overwritten (--force allows it)", path.string()));
   }
+  check_report(path);
+}
+
+void Run::check_report(const std::filesystem::path& path) const {
+  if (options_.json.empty() || options_.json == "-" || !same_file(options_.json, path)) return;
+  throw WriteError(fmt::format("{}: the report would replace the input or the output", options_.json));
 }
 
 void Run::write(const std::filesystem::path& path, const Geometry& geometry, bool ascii) {

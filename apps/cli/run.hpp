@@ -64,8 +64,8 @@ class Run {
   void finish();
 
   [[nodiscard]] const CommonOptions& common() const { return options_; }
-  nlohmann::ordered_json options;           ///< as resolved; goes into the report
-  nlohmann::ordered_json result;            ///< of the command
+  nlohmann::ordered_json options = nlohmann::ordered_json::object();  ///< as resolved; goes into the report
+  nlohmann::ordered_json result = nlohmann::ordered_json::object();   ///< of the command
   std::optional<std::uint64_t> points_in;   ///< counts.in
   std::optional<std::uint64_t> points_out;  ///< counts.out
   std::vector<std::string> attributes_kept;
@@ -83,6 +83,8 @@ class Run {
     std::chrono::steady_clock::time_point start_;
   };
 
+  // Throws when the JSON report would be written onto this file.
+  void check_report(const std::filesystem::path& path) const;
   void enter_phase(std::string_view phase);
   void add_seconds(const std::string& name, double seconds);
 

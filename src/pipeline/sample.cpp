@@ -152,7 +152,8 @@ SampleResult sample(const Geometry& geometry, const SampleSize& size, const Samp
     result.indices.insert(result.indices.end(), choice.last_resort.begin(),
                           choice.last_resort.begin() + static_cast<std::ptrdiff_t>(result.last_resort));
   }
-  context.report(1.0);
+  context.check();
+  context.report(1.0, "done");
   return result;
 }
 

@@ -129,7 +129,10 @@ class GlobalSampler {
  private:
   Cell cell_of(Index v) const {
     Cell cell;
-    for (int axis = 0; axis < 3; ++axis) cell[axis] = std::llround(std::floor(graph_.position[v][axis] / cell_size_));
+    for (int axis = 0; axis < 3; ++axis) {
+      // Cells too small to count share the last one, so that any size the user names gives a sample.
+      cell[axis] = std::llround(std::clamp(std::floor(graph_.position[v][axis] / cell_size_), -0x1p62, 0x1p62));
+    }
     return cell;
   }
 

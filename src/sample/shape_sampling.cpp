@@ -80,30 +80,34 @@ std::vector<double> variation_term(const ShapeFields& fields) {
   return values;
 }
 
-Index farthest_from_centroid(std::span<const Vec3> points) {
+// The first pick: the largest w d^2, d being the distance to the centroid. The largest w alone would not do: many points
+// have the capped one, and the order of the vertices, which changes with a rotation, would choose among them.
+Index first_pick(std::span<const Vec3> points, std::span<const double> weights) {
   Vec3 centroid = Vec3::Zero();
   for (const Vec3& p : points) centroid += p;
   centroid /= static_cast<double>(points.size());
+  const auto score = [&](Index i) { return (weights.empty() ? 1.0 : weights[i]) * (points[i] - centroid).squaredNorm(); };
   Index best = 0;
   for (Index i = 1; i < points.size(); ++i) {
-    if ((points[i] - centroid).squaredNorm() > (points[best] - centroid).squaredNorm()) best = i;
+    if (score(i) > score(best)) best = i;
   }
   return best;
 }
 
 // Ranks the points; stops after target.count picks, or when no point is farther than target.spacing from a pick.
-std::vector<Index> rank(std::span<const Vec3> points, std::span<const double> weights, Index first, double local_share,
+std::vector<Index> rank(std::span<const Vec3> points, std::span<const double> weights, double local_share,
                         const SamplingTarget& target, const RunContext& context) {
   const std::size_t limit = target.count > 0 ? target.count : points.size();
   const double stop_sq = target.spacing * target.spacing;
+  const Index first = first_pick(points, local_share > 0.0 ? weights : std::span<const double>{});
   FarthestTree tree(points, weights);
   std::vector<Index> picks;
   picks.reserve(target.count);
   std::size_t num_local = 0;
   while (picks.size() < limit) {
     if (picks.size() % kPicksPerPoll == 0) {
-      context.check();
       context.report(static_cast<double>(picks.size()) / static_cast<double>(limit));
+      context.check();
     }
     const bool local = static_cast<double>(num_local) < local_share * static_cast<double>(picks.size() + 1);
     num_local += local;
@@ -161,9 +165,7 @@ std::vector<Index> sample_by_shape(const SurfaceGraph& graph, std::span<const In
           fmt::format("density of vertex {}: {} is not a finite number >= 0", candidates[i], weights[i]));
     }
   }
-  const auto first = static_cast<Index>(std::max_element(weights.begin(), weights.end()) - weights.begin());
-  std::vector<Index> picks =
-      rank(positions_of(graph, candidates), weights, first, options.local_weight, target, context);
+  std::vector<Index> picks = rank(positions_of(graph, candidates), weights, options.local_weight, target, context);
   to_vertices(picks, candidates);
   return picks;
 }
@@ -171,8 +173,7 @@ std::vector<Index> sample_by_shape(const SurfaceGraph& graph, std::span<const In
 std::vector<Index> sample_farthest(const SurfaceGraph& graph, std::span<const Index> candidates,
                                    const SamplingTarget& target, const RunContext& context) {
   validate(target, candidates.size());
-  const std::vector<Vec3> points = positions_of(graph, candidates);
-  std::vector<Index> picks = rank(points, {}, farthest_from_centroid(points), 0.0, target, context);
+  std::vector<Index> picks = rank(positions_of(graph, candidates), {}, 0.0, target, context);
   to_vertices(picks, candidates);
   return picks;
 }

@@ -41,7 +41,8 @@ struct ShapeFields {
 /// Weighted farthest point sampling, local and global picks by turns: a share T of the picks takes the largest w d^2,
 /// the rest the largest d^2, with d the distance to the points already chosen. The result is a ranking: every prefix
 /// is a good sample with a share T of local picks (within one). The global picks alone are a greedy k-centre solution,
-/// so no gap is wider than twice the optimum for (1 - T) n points.
+/// so no gap is wider than twice the optimum for (1 - T) n points. For the first pick d is the distance to the
+/// candidates' centroid.
 /// With a spacing instead of a count it stops when every candidate is within that distance of a chosen one.
 /// Source: paper, eq. 14 for T. Pre: density.size() == graph.size(), finite, >= 0; candidates ascending, unique.
 /// Throws InvalidInput, Cancelled. Cost: O(n log n) to build, then about 28 distances per candidate for all of them.
@@ -50,8 +51,7 @@ struct ShapeFields {
                                                  const ShapeSamplingOptions& options = {},
                                                  const RunContext& context = {});
 
-/// Farthest point sampling (Eldar et al. 1997), exact: sample_by_shape with T = 0. A ranking; starts at the candidate
-/// farthest from the candidates' centroid. Cost: as above.
+/// Farthest point sampling (Eldar et al. 1997), exact: sample_by_shape with T = 0. A ranking. Cost: as above.
 [[nodiscard]] std::vector<Index> sample_farthest(const SurfaceGraph& graph, std::span<const Index> candidates,
                                                  const SamplingTarget& target, const RunContext& context = {});
 
