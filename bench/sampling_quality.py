@@ -25,12 +25,7 @@ REFERENCE = "farthest"
 SIX = {"armadillo", "bunny", "falcon", "horse", "nefertiti", "scorpion"}  # what docs/results.md leads with
 LOOKED_AT = {"armadillo", "nefertiti", "falcon", "lucy", "fandisk", "screwdriver", "bunny",
              "dragon_res2"}  # when the constants of the density were set
-DISTANCES = ("feature_coverage_mean", "coverage_mean", "coverage_max")
-TITLES = {"feature_coverage_mean": "Mean distance of feature points to the sample, ratio to farthest point",
-          "coverage_mean": "Mean distance of all points to the sample, ratio to farthest point",
-          "coverage_max": "Largest gap, ratio to farthest point",
-          "spacing_cv": "Standard deviation of the spacing over its mean",
-          "microseconds": "CPU microseconds per input point"}
+DISTANCES = ("feature_coverage_mean", "coverage_mean", "coverage_max", "surface_gap")
 
 
 class Input:
@@ -62,6 +57,15 @@ def triangles_of(tool, path, folder):
     return np.array([line.split()[1:4] for line in lines[2 + num_vertices:2 + num_vertices + num_faces]], dtype=np.int32)
 
 
+def on_surface(tool, data):
+    """False for the points that shapelight flags as strays: it ranks them behind all others."""
+    table, report = tool.sample(data.path, "--ratio", 1, "--order")
+    order = np.zeros(len(data.everything), dtype=np.int64)
+    order[table["source_index"]] = table["order"]
+    result = report["result"]
+    return order[data.finite] < result["usable"] - result["duplicates"] - result["outliers"]
+
+
 def run_ours(tool, data, count, options):
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     table, report = tool.sample(data.path, "--count", count, "--threads", 1, *options)
@@ -73,7 +77,7 @@ def run_ours(tool, data, count, options):
 
 def measure(tool, data):
     """Yields one row per sampler and ratio."""
-    is_feature = judge.features(data.points)
+    is_feature, kept = judge.features(data.points), on_surface(tool, data)
     others = peers.all_peers(data.points, data.triangles, tool.points)
     for ratio in RATIOS:
         count = max(1, round(ratio * len(data.points)))
@@ -86,7 +90,8 @@ def measure(tool, data):
             sample, seconds = done
             yield {"input": data.name, "kind": data.kind, "points": len(data.points), "ratio": ratio, "sampler": name,
                    "count": len(sample), **judge.judge(data.points, is_feature, sample),
-                   "microseconds": 1e6 * seconds / len(data.points)}
+                   "surface_gap": judge.judge(data.points[kept], is_feature[kept], sample)["coverage_max"],
+                   "strays": len(kept) - int(kept.sum()), "microseconds": 1e6 * seconds / len(data.points)}
 
 
 def relative_to_reference(rows):
@@ -96,17 +101,35 @@ def relative_to_reference(rows):
         yield {**row, **{key: row[key] / base[key] for key in DISTANCES}}
 
 
-def table(rows, measure_name):
-    """One line per sampler, one column per ratio: geometric mean (worst)."""
-    lines = ["| sampler | " + " | ".join(f"{100 * ratio:g} %" for ratio in RATIOS) + " |", "| --- |" + " ---: |" * len(RATIOS)]
+def cell(rows, sampler, ratio, name):
+    """Geometric mean (worst)."""
+    values = [row[name] for row in rows if row["sampler"] == sampler and row["ratio"] == ratio]
+    if not values:
+        return "-"
+    return f"{np.exp(np.mean(np.log(np.maximum(values, 1e-9)))):.2f} ({max(values):.2f})"
+
+
+def table(rows, columns):
+    """One line per sampler; columns: (title, ratio, name of the figure)."""
+    lines = ["| sampler | " + " | ".join(title for title, _, _ in columns) + " |", "| --- |" + " ---: |" * len(columns)]
     for sampler in dict.fromkeys(row["sampler"] for row in rows):
-        cells = []
-        for ratio in RATIOS:
-            values = [r[measure_name] for r in rows if r["sampler"] == sampler and r["ratio"] == ratio]
-            mean = np.exp(np.mean(np.log(np.maximum(values, 1e-9)))) if values else 0.0
-            cells.append(f"{mean:.2f} ({max(values):.2f})" if values else "-")
-        lines.append(f"| {sampler} | " + " | ".join(cells) + " |")
+        lines.append(f"| {sampler} | " + " | ".join(cell(rows, sampler, r, name) for _, r, name in columns) + " |")
     return "\n".join(lines)
+
+
+def tables(rows):
+    def by_ratio(name):
+        return table(rows, [(f"{100 * ratio:g} %", ratio, name) for ratio in RATIOS])
+
+    parts = ["Mean distance of feature points to the sample, ratio to farthest point:", by_ratio("feature_coverage_mean")]
+    parts += ["Largest gap, ratio to farthest point:", by_ratio("coverage_max")]
+    if any(row["strays"] > 0 for row in rows):
+        parts += ["The same without the points that shapelight flags as strays:", by_ratio("surface_gap")]
+    parts += ["At 10 %: mean distance of all points to the sample (ratio), standard deviation of the spacing over its mean, CPU "
+              "microseconds per input point:",
+              table(rows, [("mean distance", 0.10, "coverage_mean"), ("spacing", 0.10, "spacing_cv"),
+                           ("CPU us/point", 0.10, "microseconds")])]
+    return parts
 
 
 def groups(rows):
@@ -127,9 +150,9 @@ def markdown(rows):
     for title, group in groups(list(relative_to_reference(rows))):
         if not group:
             continue
-        names = ", ".join(dict.fromkeys(f"{r['input']} ({r['points']})" for r in group))
-        parts.append(f"### {title}\n\n{names}. Geometric mean over the inputs (worst one).")
-        parts += [f"{TITLES[name]}:\n\n{table(group, name)}" for name in TITLES]
+        names = ", ".join(dict.fromkeys(
+            f"{r['input']} ({r['points']} points{', ' + str(r['strays']) + ' flagged' if r['strays'] else ''})" for r in group))
+        parts += [f"### {title}", f"{names}. Geometric mean over the inputs (worst one).", *tables(group)]
     return "\n\n".join(parts) + "\n"
 
 

@@ -6,7 +6,6 @@
 // Prints Markdown. CPU time is that of the process, all threads; wall time is beside it for two threads.
 
 #include <fmt/format.h>
-#include <sys/resource.h>
 
 #include <chrono>
 #include <cmath>
@@ -20,6 +19,10 @@
 #include <string>
 #include <utility>
 #include <vector>
+
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 #include "shapelight/denoise/non_local_means.hpp"
 #include "shapelight/features/curvature.hpp"
@@ -56,8 +59,13 @@ Seconds measure(const std::function<void()>& work) {
           std::chrono::duration<double>(std::chrono::steady_clock::now() - wall).count()};
 }
 
-// Resident memory since the last reset, where Linux allows to reset its peak; else that of the whole process.
-void reset_peak_memory() { std::ofstream("/proc/self/clear_refs") << "5"; }
+// Gives freed memory back, so that it does not hide what comes next, and lets the peak start anew (Linux).
+void reset_peak_memory() {
+#ifdef __GLIBC__
+  malloc_trim(0);
+#endif
+  std::ofstream("/proc/self/clear_refs") << "5";
+}
 
 double peak_memory_bytes() {
   std::ifstream status("/proc/self/status");
@@ -143,7 +151,8 @@ void print_stages(const Geometry& geometry) {
   const auto row = [&](const std::string& name, const Seconds& a, const Seconds& b) {
     fmt::print("| {} | {:.2f} | {:.2f} | {:.2f} |\n", name, 1e6 * a.cpu / n, 1e6 * b.cpu / n, 1e6 * b.wall / n);
   };
-  Seconds sum_one, sum_two;
+  Seconds sum_one;
+  Seconds sum_two;
   for (std::size_t i = 0; i < one.size(); ++i) {
     row(one[i].first, one[i].second, two[i].second);
     sum_one.cpu += one[i].second.cpu;
