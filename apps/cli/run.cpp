@@ -50,7 +50,8 @@ void add_common_options(CLI::App& command, CommonOptions& options) {
   command.add_option("--threads", options.threads, "Threads; 0: all cores. Never changes a result. (0)")
       ->group(group)
       ->check(CLI::Range(0, 4096));
-  command.add_option("--max-memory", options.max_memory, "Refuse the run when its estimate is larger, e.g. 2G.")->group(group);
+  command.add_option("--max-memory", options.max_memory, "Refuse the run when its estimate is larger, e.g. 2G.")
+      ->group(group);
   command.add_option("--json", options.json, "Write the run's report to FILE, or to stdout with '-'.")
       ->type_name("FILE")
       ->group(group);
@@ -61,8 +62,10 @@ void add_common_options(CLI::App& command, CommonOptions& options) {
   command.add_flag("-v,--verbose", options.verbose, "More words: seconds per phase, memory.")->group(group);
   command.add_flag("--force", options.force, "Overwrite existing files.")->group(group);
   command.add_flag("--dry-run", options.dry_run, "Do everything but write.")->group(group);
-  command.add_option("--intrinsics", options.intrinsics, "Camera of a depth image: fx,fy,cx,cy [pixels].")->group(group);
-  command.add_option("--depth-scale", options.depth_scale, "Depth image steps per unit of length. (1000)")->group(group);
+  command.add_option("--intrinsics", options.intrinsics, "Camera of a depth image: fx,fy,cx,cy [pixels].")
+      ->group(group);
+  command.add_option("--depth-scale", options.depth_scale, "Depth image steps per unit of length. (1000)")
+      ->group(group);
 }
 
 Run::Run(std::string command, const CommonOptions& common_options, std::stop_token stop)
@@ -76,25 +79,37 @@ Run::Run(std::string command, const CommonOptions& common_options, std::stop_tok
 }
 
 RunContext Run::context() {
-  RunContext context{options_.threads, stop_, {}};
   const bool as_json = options_.progress == "json";
   const bool shown = as_json || options_.progress == "always" ||
                      (options_.progress == "auto" && !options_.quiet && isatty(STDERR_FILENO) != 0);
-  if (!shown) return context;
-  context.progress = [this, as_json, last = -1](double fraction, std::string_view phase) mutable {
+  RunContext context{options_.threads, stop_, {}};
+  context.progress = [this, as_json, shown, last = -1](double fraction, std::string_view phase) mutable {
+    enter_phase(phase);
     const int percent = static_cast<int>(100.0 * fraction);
-    if (percent <= last) return;
+    if (!shown || percent <= last) return;
     last = percent;
     if (as_json) {
       fmt::print(stderr, "{}\n", nlohmann::ordered_json{{"fraction", fraction}, {"phase", phase}}.dump());
     } else {
       fmt::print(stderr, "\r\033[K{:3d} %  {}", percent, phase);
-      std::fflush(stderr);
-      progress_shown_ = true;
       if (percent >= 100) fmt::print(stderr, "\r\033[K");
+      std::fflush(stderr);
     }
   };
   return context;
+}
+
+void Run::enter_phase(std::string_view phase) {
+  if (phase == phase_) return;
+  const auto now = std::chrono::steady_clock::now();
+  if (!phase_.empty()) add_seconds(phase_, std::chrono::duration<double>(now - phase_start_).count());
+  phase_ = phase;
+  phase_start_ = now;
+}
+
+void Run::add_seconds(const std::string& name, double seconds) {
+  const double before = seconds_.contains(name) ? seconds_[name].get<double>() : 0.0;
+  seconds_[name] = before + seconds;
 }
 
 Geometry Run::read(const std::filesystem::path& path) {
@@ -118,7 +133,8 @@ Geometry Run::read(const std::filesystem::path& path) {
 void Run::check_output(const std::filesystem::path& path, bool is_geometry) const {
   if (is_geometry) check_writable_format(path);
   for (const auto& input : input_paths_) {
-    if (same_file(input, path)) throw WriteError(fmt::format("{}: is the input, which is never overwritten", path.string()));
+    if (same_file(input, path))
+      throw WriteError(fmt::format("{}: is the input, which is never overwritten", path.string()));
   }
   if (!options_.force && std::filesystem::exists(path)) {
     throw WriteError(fmt::format("{}: exists already, not overwritten (--force allows it)", path.string()));
@@ -129,8 +145,8 @@ void Run::write(const std::filesystem::path& path, const Geometry& geometry, boo
   if (options_.dry_run) return;
   check_output(path);
   const Timer timer(*this, "write");
-  const std::vector<std::string> dropped =
-      write_geometry(path, geometry, {.ascii = ascii, .overwrite = options_.force}, RunContext{options_.threads, stop_, {}});
+  const std::vector<std::string> dropped = write_geometry(path, geometry, {.ascii = ascii, .overwrite = options_.force},
+                                                          RunContext{options_.threads, stop_, {}});
   for (const Column& column : geometry.attributes.columns()) {
     if (std::find(dropped.begin(), dropped.end(), column.name) == dropped.end()) attributes_kept.push_back(column.name);
   }
@@ -144,8 +160,8 @@ void Run::check_memory(std::uint64_t bytes) const {
   if (options_.max_memory.empty()) return;
   const std::uint64_t limit = parse_bytes("max-memory", options_.max_memory);
   if (bytes > limit) {
-    throw BudgetExceeded(fmt::format("the run needs about {} MiB, more than --max-memory {} allows", bytes >> 20,
-                                     options_.max_memory));
+    throw BudgetExceeded(
+        fmt::format("the run needs about {} MiB, more than --max-memory {} allows", bytes >> 20, options_.max_memory));
   }
 }
 
@@ -160,8 +176,8 @@ void Run::warn(const GraphDiagnostics& counts) {
   };
   note(counts.non_finite_points, "points without a finite position: never chosen");
   note(counts.duplicate_points, "points at the place of another one: chosen last");
-  note(counts.isolated_vertices, "points without a neighbour: chosen last");
-  note(counts.outliers - std::min(counts.outliers, counts.isolated_vertices), "points flagged as strays: chosen last");
+  note(counts.isolated_vertices, "points without a neighbour: never chosen for detail");
+  note(counts.outliers, "points flagged as strays: chosen last");
   note(counts.degenerate_triangles, "triangles with a repeated vertex or no area: ignored");
   note(counts.non_manifold_edges, "edges of more than two triangles");
 }
@@ -216,8 +232,8 @@ void Run::finish() {
 }
 
 Run::Timer::~Timer() {
-  const double before = run_.seconds_.contains(name_) ? run_.seconds_[name_].get<double>() : 0.0;
-  run_.seconds_[name_] = before + seconds_since(start_);
+  run_.enter_phase({});
+  run_.add_seconds(name_, seconds_since(start_));
 }
 
 }  // namespace shapelight::cli

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
@@ -48,7 +47,7 @@ class Run {
   void write(const std::filesystem::path& path, const Geometry& geometry, bool ascii = false);
   /// Throws BudgetExceeded when --max-memory is below `bytes`.
   void check_memory(std::uint64_t bytes) const;
-  /// Runs work and adds its time to the report under `name`.
+  /// Runs work and adds its time to the report under `name`; the library's phases within are added by themselves.
   template <class Work>
   auto timed(const std::string& name, Work&& work) {
     const Timer timer(*this, name);
@@ -84,6 +83,9 @@ class Run {
     std::chrono::steady_clock::time_point start_;
   };
 
+  void enter_phase(std::string_view phase);
+  void add_seconds(const std::string& name, double seconds);
+
   std::string command_;
   CommonOptions options_;
   std::stop_token stop_;
@@ -93,7 +95,8 @@ class Run {
   std::vector<std::filesystem::path> input_paths_;
   nlohmann::ordered_json seconds_;
   std::vector<std::string> warnings_;
-  bool progress_shown_ = false;
+  std::string phase_;  // of the library, as its progress names it
+  std::chrono::steady_clock::time_point phase_start_;
 };
 
 }  // namespace shapelight::cli

@@ -78,16 +78,19 @@ std::vector<double> variation_by_diffusion(const SurfaceGraph& graph, int neighb
 }
 
 std::vector<double> variation_of_nearest(const SurfaceGraph& graph, int neighbors, const RunContext& context) {
-  const KdTree tree(graph.position);
+  const auto others = static_cast<std::size_t>(neighbors - 1);  // the point itself is one of them
+  const std::vector<Index> nearest = KdTree(graph.position).all_nearest(others, context);
   std::vector<double> variation(graph.size());
   parallel::for_chunks(context, graph.size(), [&](std::size_t begin, std::size_t end) {
-    std::vector<Neighbor> near;
     for (std::size_t i = begin; i < end; ++i) {
       if (graph.neighbors_of(i).empty()) continue;
-      tree.nearest(graph.position[i], static_cast<std::size_t>(neighbors), near);
-      Moments sum = Moments::Zero();
-      for (const Neighbor& p : near) sum += moments_of(graph.position[p.index] - graph.position[i]);
-      variation[i] = variation_of(sum / static_cast<double>(near.size()));
+      Moments sum = Moments::Zero();  // about the point itself, which adds nothing
+      double count = 1.0;
+      for (std::size_t k = i * others; k < (i + 1) * others && nearest[k] != kNoIndex; ++k) {
+        sum += moments_of(graph.position[nearest[k]] - graph.position[i]);
+        count += 1.0;
+      }
+      variation[i] = variation_of(sum / count);
     }
   });
   return variation;

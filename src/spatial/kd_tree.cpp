@@ -25,31 +25,36 @@ double box_distance_sq(const Point& min, const Point& max, const Point& query) {
 
 }  // namespace
 
-// The best `capacity` neighbours so far, kept sorted: insertion beats a heap at the sizes in use.
+// The best `capacity` neighbours so far, kept sorted: at the sizes in use, shifting beats a heap.
 class KdTree::Candidates {
  public:
-  Candidates(std::size_t capacity, std::vector<Neighbor>& storage) : best_(storage), capacity_(capacity) {
-    best_.clear();
-    best_.reserve(capacity + 1);
+  Candidates(std::size_t capacity, std::vector<Neighbor>& storage) : storage_(storage), capacity_(capacity) {
+    storage_.resize(capacity);
+    best_ = storage_.data();
   }
+  ~Candidates() { storage_.resize(count_); }
+  Candidates(const Candidates&) = delete;
+  Candidates& operator=(const Candidates&) = delete;
+
   [[nodiscard]] double worst() const { return worst_; }
   void offer(const Neighbor& found) {
-    if (best_.size() == capacity_) {
-      if (!(found < best_.back())) return;
-      best_.pop_back();
+    std::size_t place = count_;
+    if (count_ == capacity_) {
+      if (!(found < best_[count_ - 1])) return;
+      --place;  // the last one falls out
+    } else {
+      ++count_;
     }
-    std::size_t place = best_.size();
-    best_.push_back(found);
-    while (place > 0 && found < best_[place - 1]) {
-      best_[place] = best_[place - 1];
-      --place;
-    }
+    for (; place > 0 && found < best_[place - 1]; --place) best_[place] = best_[place - 1];
     best_[place] = found;
-    if (best_.size() == capacity_) worst_ = best_.back().distance_sq;
+    if (count_ == capacity_) worst_ = best_[count_ - 1].distance_sq;
   }
+  [[nodiscard]] std::span<const Neighbor> found() const { return {best_, count_}; }
 
  private:
-  std::vector<Neighbor>& best_;
+  std::vector<Neighbor>& storage_;
+  Neighbor* best_ = nullptr;
+  std::size_t count_ = 0;
   std::size_t capacity_;
   double worst_ = std::numeric_limits<double>::infinity();
 };
@@ -178,7 +183,7 @@ std::vector<Index> KdTree::all_nearest(std::size_t k, const RunContext& context)
         }
       }
       std::size_t written = 0;
-      for (const Neighbor& neighbor : found) {
+      for (const Neighbor& neighbor : candidates.found()) {
         if (neighbor.index != index_[slot] && written < k) table[index_[slot] * k + written++] = neighbor.index;
       }
     }
