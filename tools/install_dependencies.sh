@@ -7,7 +7,7 @@ packages=(
   libeigen3-dev libtbb-dev libfmt-dev         # library
   libpng-dev liblzf-dev nlohmann-json3-dev
   libcli11-dev                                # command line
-  libgtest-dev                                # tests
+  libgtest-dev python3                        # tests
 )
 missing=()
 for package in "${packages[@]}"; do

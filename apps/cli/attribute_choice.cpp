@@ -14,14 +14,17 @@ void require_known(const AttributeTable& table, const std::vector<std::string>& 
     if (table.find(name) != nullptr) continue;
     std::string known;
     for (const Column& column : table.columns()) known += fmt::format("{}{}", known.empty() ? "" : ", ", column.name);
-    throw InvalidInput(fmt::format("--{}: no attribute '{}', expected one of: {}", option, name, known.empty() ? "(none)" : known));
+    throw InvalidInput(
+        fmt::format("--{}: no attribute '{}', expected one of: {}", option, name, known.empty() ? "(none)" : known));
   }
 }
 
 }  // namespace
 
 void AttributeChoice::add_options(CLI::App& command) {
-  command.add_option("--keep", keep, "Only these attributes travel (all do by default).")->type_name("NAME")->delimiter(',');
+  command.add_option("--keep", keep, "Only these attributes travel (all do by default).")
+      ->type_name("NAME")
+      ->delimiter(',');
   command.add_option("--drop", drop, "These attributes are left out.")->type_name("NAME")->delimiter(',');
 }
 

@@ -34,7 +34,9 @@ Command add_convert_command(CLI::App& app) {
   CLI::App* command = app.add_subcommand("convert", "Write a file in another format.");
   auto arguments = std::make_shared<ConvertArguments>();
   command->add_option("input", arguments->input, "Mesh, range image or point cloud.")->required()->type_name("IN");
-  command->add_option("output", arguments->output, "The same in the format of this extension.")->required()->type_name("OUT");
+  command->add_option("output", arguments->output, "The same in the format of this extension.")
+      ->required()
+      ->type_name("OUT");
   command->add_flag("--ascii", arguments->ascii, "Text where the format has both text and binary.");
   arguments->attributes.add_options(*command);
   add_common_options(*command, arguments->common);

@@ -51,7 +51,8 @@ int run_metrics(const MetricsArguments& arguments, std::stop_token stop) {
     line("feature coverage mean", q.feature_coverage_mean);
     line("spacing mean", q.spacing_mean);
     line("spacing min", q.spacing_min);
-    fmt::print("{:<24}{:.4g}\n{:<24}{:.4g} %\n", "spacing variation", q.spacing_cv, "samples on features", 100.0 * q.feature_share);
+    fmt::print("{:<24}{:.4g}\n{:<24}{:.4g} %\n", "spacing variation", q.spacing_cv, "samples on features",
+               100.0 * q.feature_share);
   }
   run.finish();
   return 0;

@@ -58,7 +58,8 @@ int run_render(const RenderArguments& arguments, const DescribedFlags<RenderOpti
 
   // Panels: every input in every colour, under every set of dots.
   std::vector<RenderItem> panels;
-  const std::vector<std::string> colors = arguments.colors.empty() ? std::vector<std::string>{"none"} : arguments.colors;
+  const std::vector<std::string> colors =
+      arguments.colors.empty() ? std::vector<std::string>{"none"} : arguments.colors;
   for (std::size_t i = 0; i < geometries.size(); ++i) {
     for (const std::string& color : colors) {
       const RenderItem plain = make_panel(geometries[i], stem(arguments.inputs[i]), color, arguments);
@@ -93,13 +94,17 @@ Command add_render_command(CLI::App& app) {
                    "Fields to colour by, one panel each: an attribute, rgb, normal, x, y, z, or none.")
       ->type_name("FIELD")
       ->delimiter(',');
-  command->add_option("--view", arguments->view, "auto, front, back, left, right, top, bottom, iso, or x,y,z of the eye. (auto)")
+  command
+      ->add_option("--view", arguments->view,
+                   "auto, front, back, left, right, top, bottom, iso, or x,y,z of the eye. (auto)")
       ->type_name("FROM");
   command
-      ->add_option("--dots", arguments->dots, "Points to draw on top, such as a sample; of several files, a panel each.")
+      ->add_option("--dots", arguments->dots,
+                   "Points to draw on top, such as a sample; of several files, a panel each.")
       ->type_name("FILE")
       ->delimiter(',');
-  command->add_option("--point-size", arguments->point_size, "Diameter of a cloud's points [pixels]; 0: by their spacing.");
+  command->add_option("--point-size", arguments->point_size,
+                      "Diameter of a cloud's points [pixels]; 0: by their spacing.");
   command->add_option("--dot-size", arguments->dot_size, "Diameter of the dots [pixels]; 0: by their number.");
   auto flags = std::make_shared<DescribedFlags<RenderOptions>>(
       *command, std::initializer_list<std::string_view>{"width", "height"});

@@ -76,12 +76,13 @@ int run_sample(const SampleArguments& arguments, const DescribedFlags<SampleOpti
   run.check_memory(geometry.size() * kBytesPerPoint);
   run.attributes_dropped = arguments.attributes.apply(geometry.attributes);
   const SampleSize size = size_of(arguments, bounding_box(geometry.positions).diagonal());
-  const auto [result, is_partial] = run.timed(
-      "sample", [&] { return sample_within_reach(geometry, size, options, arguments.allow_partial, run); });
+  const auto [result, is_partial] =
+      run.timed("sample", [&] { return sample_within_reach(geometry, size, options, arguments.allow_partial, run); });
 
   run.warn(result.diagnostics);
   if (result.last_resort > 0) {
-    run.warn(fmt::format("{} of the points chosen are strays or duplicates, since the count asks for so many", result.last_resort));
+    run.warn(fmt::format("{} of the points chosen are strays or duplicates, since the count asks for so many",
+                         result.last_resort));
   }
   run.write(arguments.output, assemble(geometry, result.indices, arguments));
   run.points_in = geometry.size();
@@ -101,7 +102,8 @@ int run_sample(const SampleArguments& arguments, const DescribedFlags<SampleOpti
                 {"noise", result.noise},
                 {"denoised", result.denoised}};
   run.say(fmt::format("{}: {} of {} points kept ({:.3g} %), method {}{}", arguments.output, result.indices.size(),
-                      geometry.size(), 100.0 * static_cast<double>(result.indices.size()) / static_cast<double>(geometry.size()),
+                      geometry.size(),
+                      100.0 * static_cast<double>(result.indices.size()) / static_cast<double>(geometry.size()),
                       enum_name(options.method),
                       options.method == SamplingMethod::Shape ? fmt::format(" ({})", arguments.preset) : ""));
   run.finish();
@@ -111,17 +113,22 @@ int run_sample(const SampleArguments& arguments, const DescribedFlags<SampleOpti
 }  // namespace
 
 Command add_sample_command(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("sample", "Keep the points that carry the shape, exactly as many as asked for.");
+  CLI::App* command =
+      app.add_subcommand("sample", "Keep the points that carry the shape, exactly as many as asked for.");
   auto arguments = std::make_shared<SampleArguments>();
   command->add_option("input", arguments->input, "Mesh, range image or point cloud.")->required()->type_name("IN");
   command->add_option("-o,--output", arguments->output, "The points kept.")->required()->type_name("OUT");
   command->add_option("--count", arguments->count, "Points to keep: 1200, 50k, 2M.")->type_name("N");
   command->add_option("--ratio", arguments->ratio, "Share to keep: 0.1 or 10%.")->type_name("R");
-  command->add_option("--spacing", arguments->spacing, "Spacing to keep, in the file's units or % of the diagonal.")->type_name("S");
-  command->add_option("--preset", arguments->preset, "detail, fast (no NLM, no Retinex) or paper (the literal paper). (detail)");
+  command->add_option("--spacing", arguments->spacing, "Spacing to keep, in the file's units or % of the diagonal.")
+      ->type_name("S");
+  command->add_option("--preset", arguments->preset,
+                      "detail, fast (no NLM, no Retinex) or paper (the literal paper). (detail)");
   command->add_flag("--index-field", arguments->index_field, "Write source_index: the input index of each point.");
-  command->add_flag("--order", arguments->order, "Write order: 0 for the point chosen first; every prefix is a sample.");
-  command->add_flag("--allow-partial", arguments->allow_partial, "Write what there is when the count cannot be reached (exit code 5).");
+  command->add_flag("--order", arguments->order,
+                    "Write order: 0 for the point chosen first; every prefix is a sample.");
+  command->add_flag("--allow-partial", arguments->allow_partial,
+                    "Write what there is when the count cannot be reached (exit code 5).");
   arguments->attributes.add_options(*command);
   auto flags = std::make_shared<DescribedFlags<SampleOptions>>(
       *command, std::initializer_list<std::string_view>{"method", "local-weight", "skip-boundary", "seed"});

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -70,7 +70,8 @@ class DescribedFlags {
     } else {
       return app
           .add_option_function<std::string>(
-              "--" + name, [typed = typed_, name](const std::string& text) { (*typed)[name] = text; }, help(info, value))
+              "--" + name, [typed = typed_, name](const std::string& text) { (*typed)[name] = text; },
+              help(info, value))
           ->type_name(type_name<Member>());
     }
   }
@@ -90,9 +91,12 @@ class DescribedFlags {
   static std::string help(const OptionInfo& info, const Member& value) {
     std::string text(info.meaning);
     if (!info.unit.empty() && info.unit != "1") text += fmt::format(" [{}]", info.unit);
-    if constexpr (std::is_same_v<Member, bool>) return text + (value ? " (on)" : "");
-    else if constexpr (std::is_enum_v<Member>) return text + fmt::format(" ({})", enum_name(value));
-    else return text + fmt::format(" ({:g})", static_cast<double>(value));
+    if constexpr (std::is_same_v<Member, bool>)
+      return text + (value ? " (on)" : "");
+    else if constexpr (std::is_enum_v<Member>)
+      return text + fmt::format(" ({})", enum_name(value));
+    else
+      return text + fmt::format(" ({:g})", static_cast<double>(value));
   }
 
   template <class Member>
@@ -120,8 +124,10 @@ template <DescribedOptions T>
   nlohmann::ordered_json json;
   T::describe(options, [&](const OptionInfo& info, const auto& member) {
     using Member = std::remove_cvref_t<decltype(member)>;
-    if constexpr (std::is_enum_v<Member>) json[std::string(info.name)] = enum_name(member);
-    else json[std::string(info.name)] = member;
+    if constexpr (std::is_enum_v<Member>)
+      json[std::string(info.name)] = enum_name(member);
+    else
+      json[std::string(info.name)] = member;
   });
   return json;
 }

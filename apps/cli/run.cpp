@@ -51,7 +51,8 @@ void add_common_options(CLI::App& command, CommonOptions& options) {
   command.add_option("--threads", options.threads, "Threads; 0: all cores. Never changes a result. (0)")
       ->group(group)
       ->check(CLI::Range(0, 4096));
-  command.add_option("--max-memory", options.max_memory, "Refuse the run when its estimate is larger, e.g. 2G.")->group(group);
+  command.add_option("--max-memory", options.max_memory, "Refuse the run when its estimate is larger, e.g. 2G.")
+      ->group(group);
   command.add_option("--json", options.json, "Write the run's report to FILE, or to stdout with '-'.")
       ->type_name("FILE")
       ->group(group);
@@ -62,8 +63,10 @@ void add_common_options(CLI::App& command, CommonOptions& options) {
   command.add_flag("-v,--verbose", options.verbose, "More words: seconds per phase, memory.")->group(group);
   command.add_flag("--force", options.force, "Overwrite existing files.")->group(group);
   command.add_flag("--dry-run", options.dry_run, "Do everything but write.")->group(group);
-  command.add_option("--intrinsics", options.intrinsics, "Camera of a depth image: fx,fy,cx,cy [pixels].")->group(group);
-  command.add_option("--depth-scale", options.depth_scale, "Depth image steps per unit of length. (1000)")->group(group);
+  command.add_option("--intrinsics", options.intrinsics, "Camera of a depth image: fx,fy,cx,cy [pixels].")
+      ->group(group);
+  command.add_option("--depth-scale", options.depth_scale, "Depth image steps per unit of length. (1000)")
+      ->group(group);
 }
 
 Run::Run(std::string command, const CommonOptions& common_options, std::stop_token stop)
@@ -132,7 +135,8 @@ Geometry Run::read(const std::filesystem::path& path) {
 void Run::check_output(const std::filesystem::path& path, bool is_geometry) const {
   if (is_geometry) check_writable_format(path);
   for (const auto& input : input_paths_) {
-    if (same_file(input, path)) throw WriteError(fmt::format("{}: is the input, which is never overwritten", path.string()));
+    if (same_file(input, path))
+      throw WriteError(fmt::format("{}: is the input, which is never overwritten", path.string()));
   }
   if (!options_.force && std::filesystem::exists(path)) {
     throw WriteError(fmt::format("{}: exists already, not overwritten (--force allows it)", path.string()));
@@ -149,8 +153,8 @@ void Run::write(const std::filesystem::path& path, const Geometry& geometry, boo
   if (options_.dry_run) return;
   check_output(path);
   const Timer timer(*this, "write");
-  const std::vector<std::string> dropped =
-      write_geometry(path, geometry, {.ascii = ascii, .overwrite = options_.force}, RunContext{options_.threads, stop_, {}});
+  const std::vector<std::string> dropped = write_geometry(path, geometry, {.ascii = ascii, .overwrite = options_.force},
+                                                          RunContext{options_.threads, stop_, {}});
   for (const Column& column : geometry.attributes.columns()) {
     if (std::find(dropped.begin(), dropped.end(), column.name) == dropped.end()) attributes_kept.push_back(column.name);
   }
@@ -164,8 +168,8 @@ void Run::check_memory(std::uint64_t bytes) const {
   if (options_.max_memory.empty()) return;
   const std::uint64_t limit = parse_bytes("max-memory", options_.max_memory);
   if (bytes > limit) {
-    throw BudgetExceeded(fmt::format("the run needs about {} MiB, more than --max-memory {} allows", bytes >> 20,
-                                     options_.max_memory));
+    throw BudgetExceeded(
+        fmt::format("the run needs about {} MiB, more than --max-memory {} allows", bytes >> 20, options_.max_memory));
   }
 }
 

@@ -21,9 +21,8 @@ void run_chunks(const RunContext& context, std::size_t num_chunks, const std::fu
 /// Calls body(begin, end) for consecutive ranges of at most `chunk` items. Safe when bodies write to their own items.
 template <class Body>
 void for_chunks(const RunContext& context, std::size_t count, Body&& body, std::size_t chunk = kDefaultChunk) {
-  run_chunks(context, (count + chunk - 1) / chunk, [&](std::size_t i) {
-    body(i * chunk, std::min(count, (i + 1) * chunk));
-  });
+  run_chunks(context, (count + chunk - 1) / chunk,
+             [&](std::size_t i) { body(i * chunk, std::min(count, (i + 1) * chunk)); });
 }
 
 /// map(begin, end) -> T per chunk, then join(total, part) in chunk order.
@@ -32,9 +31,7 @@ template <class T, class Map, class Join>
                               std::size_t chunk = kDefaultChunk) {
   const std::size_t num_chunks = (count + chunk - 1) / chunk;
   std::vector<T> parts(num_chunks, total);
-  run_chunks(context, num_chunks, [&](std::size_t i) {
-    parts[i] = map(i * chunk, std::min(count, (i + 1) * chunk));
-  });
+  run_chunks(context, num_chunks, [&](std::size_t i) { parts[i] = map(i * chunk, std::min(count, (i + 1) * chunk)); });
   for (T& part : parts) total = join(std::move(total), std::move(part));
   return total;
 }

@@ -6,9 +6,12 @@ namespace shapelight {
 
 std::string_view geometry_kind_name(GeometryKind kind) {
   switch (kind) {
-    case GeometryKind::Mesh: return "mesh";
-    case GeometryKind::RangeImage: return "range_image";
-    case GeometryKind::Cloud: break;
+    case GeometryKind::Mesh:
+      return "mesh";
+    case GeometryKind::RangeImage:
+      return "range_image";
+    case GeometryKind::Cloud:
+      break;
   }
   return "cloud";
 }

@@ -52,7 +52,8 @@ std::vector<Keyed> morton_keys(std::span<const Vec3> positions, const BoundingBo
       keys[i] = {~0ULL, static_cast<Index>(i)};
       if (!positions[i].allFinite()) continue;
       const Vec3 cell = (positions[i] - box.min) * scale;
-      keys[i].morton = spread(static_cast<std::uint64_t>(cell.x())) | spread(static_cast<std::uint64_t>(cell.y())) << 1 |
+      keys[i].morton = spread(static_cast<std::uint64_t>(cell.x())) |
+                       spread(static_cast<std::uint64_t>(cell.y())) << 1 |
                        spread(static_cast<std::uint64_t>(cell.z())) << 2;
     }
   });

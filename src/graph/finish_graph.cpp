@@ -11,7 +11,7 @@ namespace shapelight {
 namespace {
 
 constexpr double kNearSurface = 3.0;  // [mean edge lengths] an isolated vertex farther from all others is a stray
-constexpr double kFlat = 0.01;  // share of |n . (p - c)| that must agree on a side for the shape to decide
+constexpr double kFlat = 0.01;        // share of |n . (p - c)| that must agree on a side for the shape to decide
 
 struct ComponentSide {
   Vec3 center = Vec3::Zero();
@@ -26,8 +26,10 @@ void flag_isolated(SurfaceGraph& graph) {
   std::vector<Index> isolated;
   std::vector<Vec3> connected;
   for (Index i = 0; i < graph.size(); ++i) {
-    if (graph.neighbors_of(i).empty()) isolated.push_back(i);
-    else connected.push_back(graph.position[i]);
+    if (graph.neighbors_of(i).empty())
+      isolated.push_back(i);
+    else
+      connected.push_back(graph.position[i]);
   }
   if (isolated.empty()) return;
   const KdTree tree(connected);

@@ -37,7 +37,8 @@ std::vector<Triangle> usable_triangles(BuiltGraph& built, std::span<const Triang
     bool finite = true;
     for (int c = 0; c < 3; ++c) {
       if (triangles[t][c] >= graph.vertex_of_point.size()) {
-        throw InvalidInput(fmt::format("triangle {}: vertex {} >= {} vertices", t, triangles[t][c], graph.vertex_of_point.size()));
+        throw InvalidInput(
+            fmt::format("triangle {}: vertex {} >= {} vertices", t, triangles[t][c], graph.vertex_of_point.size()));
       }
       mapped[c] = graph.vertex_of_point[triangles[t][c]];
       finite = finite && mapped[c] != kNoIndex;
@@ -90,7 +91,8 @@ void edges_of(const SurfaceGraph& graph, const Corners& corners, std::size_t i, 
     edges.push_back({corner.next, 1, area});
     edges.push_back({corner.previous, 1, area});
   }
-  std::stable_sort(edges.begin(), edges.end(), [](const EdgeEnd& a, const EdgeEnd& b) { return a.neighbor < b.neighbor; });
+  std::stable_sort(edges.begin(), edges.end(),
+                   [](const EdgeEnd& a, const EdgeEnd& b) { return a.neighbor < b.neighbor; });
   std::size_t kept = 0;
   for (const EdgeEnd& edge : edges) {
     if (kept > 0 && edges[kept - 1].neighbor == edge.neighbor) {

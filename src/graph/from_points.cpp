@@ -1,5 +1,4 @@
 #include <Eigen/Eigenvalues>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -18,7 +17,8 @@ constexpr double kSparseGlobal = 6.0;    // r_k against the median r_k of the cl
 constexpr std::size_t kStrayFans = 2;    // a stray is near to few dense points; sparse surface points to many...
 constexpr double kStrayHeight = 0.3;     // ...and it stands off their tangent planes: mean |n'.d| / |d|
 constexpr std::size_t kStrayGroup = 50;  // [points] small groups apart from everything are strays as well
-constexpr double kBoundaryOffset = 0.4; // |centroid of neighbours| / mean distance: 0 inside, 0.64 on a straight border
+constexpr double kBoundaryOffset =
+    0.4;                                // |centroid of neighbours| / mean distance: 0 inside, 0.64 on a straight border
 constexpr int kWeightLevels = 1 << 16;  // resolution of 1 - |n.n'| in the spanning tree
 
 // Row i: the k nearest of vertex i, nearest first, kNoIndex at the end where there are fewer.
@@ -125,7 +125,8 @@ void orient_along_spanning_tree(SurfaceGraph& graph) {
 // Sparse points: r_k stands out. By itself that is no fault: scans thin out with range, meshes with curvature.
 enum class Sparse : std::uint8_t { No, Locally, Globally };
 
-std::vector<Sparse> find_sparse(const NearestTable& nearest, std::span<const double> radius, const RunContext& context) {
+std::vector<Sparse> find_sparse(const NearestTable& nearest, std::span<const double> radius,
+                                const RunContext& context) {
   const std::size_t n = radius.size();
   std::vector<double> sorted(radius.begin(), radius.end());
   std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(n / 2), sorted.end());
@@ -138,8 +139,10 @@ std::vector<Sparse> find_sparse(const NearestTable& nearest, std::span<const dou
       for (const Index j : nearest.of(i)) around.push_back(radius[j]);
       if (around.empty()) continue;
       std::nth_element(around.begin(), around.begin() + static_cast<std::ptrdiff_t>(around.size() / 2), around.end());
-      if (radius[i] > kSparseGlobal * global) sparse[i] = Sparse::Globally;
-      else if (radius[i] > kSparseLocal * around[around.size() / 2]) sparse[i] = Sparse::Locally;
+      if (radius[i] > kSparseGlobal * global)
+        sparse[i] = Sparse::Globally;
+      else if (radius[i] > kSparseLocal * around[around.size() / 2])
+        sparse[i] = Sparse::Locally;
     }
   });
   return sparse;

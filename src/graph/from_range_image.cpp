@@ -92,7 +92,8 @@ BuiltGraph graph_from_range_image(std::span<const Vec3> positions, const RangeGr
   }
   for (std::size_t i = 0; i < grid.pixel.size(); ++i) {
     if (grid.pixel[i] != kNoIndex && grid.pixel[i] >= positions.size()) {
-      throw InvalidInput(fmt::format("range image: pixel {}: point {} >= {} points", i, grid.pixel[i], positions.size()));
+      throw InvalidInput(
+          fmt::format("range image: pixel {}: point {} >= {} points", i, grid.pixel[i], positions.size()));
     }
   }
   const RunContext cut = context.phase(0.0, 0.3, "cut depth jumps");
@@ -104,10 +105,12 @@ BuiltGraph graph_from_range_image(std::span<const Vec3> positions, const RangeGr
 
 BuiltGraph build_graph(const Geometry& geometry, const GraphOptions& options, const RunContext& context) {
   switch (geometry.kind()) {
-    case GeometryKind::Mesh: return graph_from_mesh(geometry.positions, geometry.triangles, context);
+    case GeometryKind::Mesh:
+      return graph_from_mesh(geometry.positions, geometry.triangles, context);
     case GeometryKind::RangeImage:
       return graph_from_range_image(geometry.positions, *geometry.grid, geometry.viewpoint, options, context);
-    case GeometryKind::Cloud: break;
+    case GeometryKind::Cloud:
+      break;
   }
   return graph_from_points(geometry.positions, geometry.viewpoint, options, context);
 }

@@ -109,7 +109,7 @@ Geometry read_geometry(const std::filesystem::path& path, const ReadOptions& opt
   if (format->read == nullptr) {
     throw FormatError(fmt::format(
         "{}: {} files are read by the Python package, whose shapelight command takes them: pip install shapelight[{}]",
-        path.string(), format->name, format->name));
+        path.string(), format->name, format->name == "laz" ? "las" : format->name));
   }
   context.check();
   Geometry geometry = format->read({file, path, options, context});

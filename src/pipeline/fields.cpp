@@ -32,8 +32,8 @@ Plan plan_for(GeometryKind kind, double relative_noise, const FieldsOptions& opt
     plan.curvature.smoothing_passes = plan.noisy ? kNoisyPasses : 1;
   }
   plan.denoise = options.denoise && plan.noisy;
-  // A third more neighbours average more noise out: 77 in place of 74 % of the local points of a noisy armadillo lie on or
-  // beside true features, for 1 to 2 % in the mean distance from features to the sample.
+  // A third more neighbours average more noise out: 77 in place of 74 % of the local points of a noisy armadillo lie on
+  // or beside true features, for 1 to 2 % in the mean distance from features to the sample.
   if (plan.noisy) plan.variation.neighbors = std::min(1000, options.variation.neighbors * 4 / 3);
   return plan;
 }
@@ -92,8 +92,8 @@ SurfaceFields compute_fields(const SurfaceGraph& graph, GeometryKind kind, const
   fields.curvedness = curvedness_of(curvatures);
   fields.surface_variation =
       compute_surface_variation(graph, plan.variation, context.phase(0.2, 0.3, "measure surface variation"));
-  fields.shape_index =
-      compute_shape_index(graph, curvatures, fields.noise, options.shape_index, context.phase(0.3, 0.35, "shape index"));
+  fields.shape_index = compute_shape_index(graph, curvatures, fields.noise, options.shape_index,
+                                           context.phase(0.3, 0.35, "shape index"));
   if (plan.denoise) {
     fields.shape_index = non_local_means(graph, fields.shape_index, curvatures.direction1, options.non_local_means,
                                          context.phase(0.35, 0.7, "non-local means"));
@@ -112,9 +112,9 @@ SurfaceFields compute_fields(const SurfaceGraph& graph, GeometryKind kind, const
     fields.num_segments = segments.count;
   }
   const std::span<const double> modulation = options.retinex ? fields.shape_index : std::span<const double>{};
-  fields.importance = sampling_density(
-      graph, {fields.curvedness, fields.surface_variation, modulation, fields.reflectance, plan.noisy},
-      context.phase(0.95, 1.0, "importance"));
+  fields.importance =
+      sampling_density(graph, {fields.curvedness, fields.surface_variation, modulation, fields.reflectance, plan.noisy},
+                       context.phase(0.95, 1.0, "importance"));
   fields.k1 = std::move(curvatures.k1);
   fields.k2 = std::move(curvatures.k2);
   return fields;

@@ -50,12 +50,14 @@ Choice choices(const SurfaceGraph& graph, bool skip_boundary) {
 
 std::size_t count_of(const SampleSize& size, std::size_t usable, std::size_t reachable) {
   if (size.spacing) return 0;
-  const auto rounded = [&] { return std::max<std::uint64_t>(1, std::llround(*size.ratio * static_cast<double>(usable))); };
+  const auto rounded = [&] {
+    return std::max<std::uint64_t>(1, std::llround(*size.ratio * static_cast<double>(usable)));
+  };
   const std::uint64_t count = size.count ? *size.count : rounded();
   if (count > reachable) {
-    throw TargetUnreachable(fmt::format("{} points asked for, but only {} of {} finite points can be chosen", count,
-                                        reachable, usable),
-                            reachable);
+    throw TargetUnreachable(
+        fmt::format("{} points asked for, but only {} of {} finite points can be chosen", count, reachable, usable),
+        reachable);
   }
   return count;
 }
@@ -82,14 +84,22 @@ std::vector<Index> run_method(const SurfaceGraph& graph, GeometryKind kind, std:
                               const SamplingTarget& target, const SampleOptions& options, SampleResult& result,
                               const RunContext& context) {
   switch (options.method) {
-    case SamplingMethod::Random: return sample_random(graph, candidates, target, {.seed = options.seed}, context);
-    case SamplingMethod::Voxel: return sample_voxel(graph, candidates, target, {}, context);
-    case SamplingMethod::Stratified: return sample_stratified(graph, candidates, target, {.seed = options.seed}, context);
-    case SamplingMethod::Farthest: return sample_farthest(graph, candidates, target, context);
-    case SamplingMethod::Poisson: return sample_poisson(graph, candidates, target, {.seed = options.seed}, context);
-    case SamplingMethod::Normal: return sample_normal_space(graph, candidates, target, {.seed = options.seed}, context);
-    case SamplingMethod::Covariance: return sample_covariance(graph, candidates, target, {}, context);
-    case SamplingMethod::Shape: break;
+    case SamplingMethod::Random:
+      return sample_random(graph, candidates, target, {.seed = options.seed}, context);
+    case SamplingMethod::Voxel:
+      return sample_voxel(graph, candidates, target, {}, context);
+    case SamplingMethod::Stratified:
+      return sample_stratified(graph, candidates, target, {.seed = options.seed}, context);
+    case SamplingMethod::Farthest:
+      return sample_farthest(graph, candidates, target, context);
+    case SamplingMethod::Poisson:
+      return sample_poisson(graph, candidates, target, {.seed = options.seed}, context);
+    case SamplingMethod::Normal:
+      return sample_normal_space(graph, candidates, target, {.seed = options.seed}, context);
+    case SamplingMethod::Covariance:
+      return sample_covariance(graph, candidates, target, {}, context);
+    case SamplingMethod::Shape:
+      break;
   }
   return sample_shape(graph, kind, candidates, target, options, result, context);
 }

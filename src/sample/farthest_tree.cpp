@@ -37,7 +37,8 @@ std::uint32_t FarthestTree::build(std::uint32_t begin, std::uint32_t end, std::s
     min = min.cwiseMin(points[index_[slot]]);
     max = max.cwiseMax(points[index_[slot]]);
   }
-  nodes_.push_back({{min.x(), min.y(), min.z()}, {max.x(), max.y(), max.z()}, {kFar, begin}, {kFar, begin}, begin, end, 0});
+  nodes_.push_back(
+      {{min.x(), min.y(), min.z()}, {max.x(), max.y(), max.z()}, {kFar, begin}, {kFar, begin}, begin, end, 0});
   if (end - begin <= kLeafSize) return id;
   int axis = 0;
   (max - min).maxCoeff(&axis);

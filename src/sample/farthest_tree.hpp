@@ -21,8 +21,8 @@ class FarthestTree {
   /// Chooses a point and shortens the distances of all others. Cost: about O(log n) on average over a whole ranking.
   void choose(Index point);
 
-  [[nodiscard]] Index farthest() const { return index_[nodes_[0].far.slot]; }           ///< largest d
-  [[nodiscard]] double farthest_sq() const { return nodes_[0].far.value; }              ///< that d
+  [[nodiscard]] Index farthest() const { return index_[nodes_[0].far.slot]; }                ///< largest d
+  [[nodiscard]] double farthest_sq() const { return nodes_[0].far.value; }                   ///< that d
   [[nodiscard]] Index weighted_farthest() const { return index_[nodes_[0].weighted.slot]; }  ///< largest w d
   [[nodiscard]] double weighted_farthest_sq() const { return nodes_[0].weighted.value; }
 

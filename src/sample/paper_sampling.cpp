@@ -15,7 +15,8 @@ namespace {
 
 constexpr int kHistogramBins = 32;
 constexpr double kRelax = 0.7;
-constexpr int kMaxRelaxations = 60;  // 0.7^60 is below any spacing of doubles that are not equal; then the limit is dropped
+constexpr int kMaxRelaxations =
+    60;  // 0.7^60 is below any spacing of doubles that are not equal; then the limit is dropped
 
 // Shares `total` among parts in proportion to `weight`, none above its `capacity`: largest remainder, repeated while
 // capped parts leave something over. Pre: the capacities add up to at least `total`.
@@ -161,7 +162,8 @@ class GlobalSampler {
         score = -(graph_.position[*v] - voxel.centroid).squaredNorm();
       } else {
         score = std::numeric_limits<double>::infinity();
-        for (const Index c : voxel.chosen) score = std::min(score, (graph_.position[*v] - graph_.position[c]).squaredNorm());
+        for (const Index c : voxel.chosen)
+          score = std::min(score, (graph_.position[*v] - graph_.position[c]).squaredNorm());
       }
       if (score > best_score && is_free(cell, *v, min_distance)) {
         best_score = score;
@@ -212,10 +214,11 @@ std::vector<Index> sample_paper(const SurfaceGraph& graph, std::span<const Index
   validate(target, candidates.size());
   if (target.count == 0) throw InvalidInput("the paper's sampling takes a count or a ratio, not a spacing");
   if (shape_index.size() != graph.size() || segment.size() != graph.size()) {
-    throw InvalidInput(fmt::format("paper sampling: {} shape indices and {} segments for {} vertices", shape_index.size(),
-                                   segment.size(), graph.size()));
+    throw InvalidInput(fmt::format("paper sampling: {} shape indices and {} segments for {} vertices",
+                                   shape_index.size(), segment.size(), graph.size()));
   }
-  const auto num_local = static_cast<std::size_t>(std::llround(options.local_weight * static_cast<double>(target.count)));
+  const auto num_local =
+      static_cast<std::size_t>(std::llround(options.local_weight * static_cast<double>(target.count)));
   std::vector<Index> picks = choose_local(candidates, shape_index, segment, num_local);
   const std::size_t num_global = target.count - num_local;
   if (num_global == 0) return picks;

@@ -14,8 +14,8 @@ namespace {
 
 constexpr double kDensityFloor = 0.15;
 constexpr double kDensityCap = 6.0;
-// The variation's share and exponent were chosen by measurement (docs/sampling.md): against equal halves of both as they
-// are, the most curved tenth is covered at 0.85 of the distance at the same largest gap.
+// The variation's share and exponent were chosen by measurement (docs/sampling.md): against equal halves of both as
+// they are, the most curved tenth is covered at 0.85 of the distance at the same largest gap.
 constexpr double kVariationShare = 0.7;
 constexpr double kVariationExponent = 1.5;
 constexpr int kCapRounds = 6;  // capping moves the mean; after six rounds both have settled
@@ -161,7 +161,8 @@ std::vector<Index> sample_by_shape(const SurfaceGraph& graph, std::span<const In
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     weights[i] = density[candidates[i]];
     if (!(weights[i] >= 0.0 && std::isfinite(weights[i]))) {
-      throw InvalidInput(fmt::format("density of vertex {}: {} is not a finite number >= 0", candidates[i], weights[i]));
+      throw InvalidInput(
+          fmt::format("density of vertex {}: {} is not a finite number >= 0", candidates[i], weights[i]));
     }
   }
   std::vector<Index> picks = rank(positions_of(graph, candidates), weights, options.local_weight, target, context);

@@ -20,11 +20,13 @@ struct OptionInfo {
 /// every member, in the order of declaration. Members are bool, an integer, double, or an enum that has
 /// `enum_names(E)` returning an array of (value, name) pairs, found by argument-dependent lookup.
 template <class T>
-concept DescribedOptions = requires(T& options) { T::describe(options, [](const OptionInfo&, auto&) {}); };
+concept DescribedOptions = requires(T& options) {
+  T::describe(options, [](const OptionInfo&, auto&) {});
+};
 
 /// Name of an enum value from its enum_names() table.
 template <class E>
-  requires std::is_enum_v<E>
+requires std::is_enum_v<E>
 [[nodiscard]] std::string_view enum_name(E value) {
   for (const auto& [candidate, name] : enum_names(value)) {
     if (candidate == value) return name;

@@ -11,9 +11,9 @@ using ProgressFn = std::function<void(double, std::string_view)>;
 
 /// How to run. Nothing in it may change a result.
 struct RunContext {
-  int max_threads = 0;      ///< 0: all cores; 1: no pool is started
-  std::stop_token stop{};   ///< polled once per chunk of work; a request ends in Cancelled
-  ProgressFn progress{};    ///< empty: silent
+  int max_threads = 0;     ///< 0: all cores; 1: no pool is started
+  std::stop_token stop{};  ///< polled once per chunk of work; a request ends in Cancelled
+  ProgressFn progress{};   ///< empty: silent
 
   /// The same context for one phase of a longer job: its [0, 1] becomes [begin, end] of this one.
   /// Reports `name` at once, so that entering a phase is visible.

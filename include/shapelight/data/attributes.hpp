@@ -20,10 +20,10 @@ enum class ScalarType : std::uint8_t { Int8, UInt8, Int16, UInt16, Int32, UInt32
 /// One named scalar per element, in the type of the file, so that writing it back changes no bit.
 /// The variant's alternatives are in the order of ScalarType.
 struct Column {
-  using Values = std::variant<std::vector<std::int8_t>, std::vector<std::uint8_t>, std::vector<std::int16_t>,
-                              std::vector<std::uint16_t>, std::vector<std::int32_t>, std::vector<std::uint32_t>,
-                              std::vector<std::int64_t>, std::vector<std::uint64_t>, std::vector<float>,
-                              std::vector<double>>;
+  using Values =
+      std::variant<std::vector<std::int8_t>, std::vector<std::uint8_t>, std::vector<std::int16_t>,
+                   std::vector<std::uint16_t>, std::vector<std::int32_t>, std::vector<std::uint32_t>,
+                   std::vector<std::int64_t>, std::vector<std::uint64_t>, std::vector<float>, std::vector<double>>;
   std::string name;
   Values values;
 

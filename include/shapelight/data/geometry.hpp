@@ -37,18 +37,18 @@ struct LasInfo {
 /// Points, and whatever of triangles and pixels the input has: the one thing that readers return and writers take.
 /// Indices are the input file's own, so point i is the i-th point of the file.
 struct Geometry {
-  std::vector<Vec3> positions;       ///< [input length unit], input frame, exact; non-finite where nothing was measured
+  std::vector<Vec3> positions;  ///< [input length unit], input frame, exact; non-finite where nothing was measured
   ScalarType coordinate_type = ScalarType::Float64;  ///< type the coordinates had in the file: Float32 or Float64
-  AttributeTable attributes;         ///< per point
-  std::vector<Triangle> triangles;   ///< empty unless a mesh; polygons were cut into triangles on reading
+  AttributeTable attributes;                         ///< per point
+  std::vector<Triangle> triangles;  ///< empty unless a mesh; polygons were cut into triangles on reading
   AttributeTable triangle_attributes;
   std::vector<std::array<float, 2>> corner_texcoords;  ///< (u, v) per triangle corner: empty or 3 x triangles
   std::optional<RangeGrid> grid;
-  std::optional<Vec3> viewpoint;     ///< position of the sensor in the input frame, when known
-  std::vector<std::string> comments; ///< free text of the file, without line ends
+  std::optional<Vec3> viewpoint;      ///< position of the sensor in the input frame, when known
+  std::vector<std::string> comments;  ///< free text of the file, without line ends
   std::shared_ptr<const LasInfo> las;
-  std::vector<std::string> warnings; ///< odd but usable things met while reading, for people
-  std::string format;                ///< of the file: "ply", "las", ...
+  std::vector<std::string> warnings;  ///< odd but usable things met while reading, for people
+  std::string format;                 ///< of the file: "ply", "las", ...
 
   [[nodiscard]] GeometryKind kind() const;
   [[nodiscard]] std::size_t size() const { return positions.size(); }

@@ -19,9 +19,11 @@ struct GraphOptions {
   template <class Self, class Visitor>
   static void describe(Self& o, Visitor&& visit) {
     visit(OptionInfo{"neighbors", "points", "Neighbours per point in the graph of a raw cloud.", 4, 64}, o.neighbors);
-    visit(OptionInfo{"depth-jump", "median pixel spacings", "Longer edges between pixels of a range image are cut.", 1.5, 1e6},
+    visit(OptionInfo{"depth-jump", "median pixel spacings", "Longer edges between pixels of a range image are cut.",
+                     1.5, 1e6},
           o.depth_jump);
-    visit(OptionInfo{"flag-outliers", "", "Flag strays of a raw cloud, so that they are chosen last.", 0, 1}, o.flag_outliers);
+    visit(OptionInfo{"flag-outliers", "", "Flag strays of a raw cloud, so that they are chosen last.", 0, 1},
+          o.flag_outliers);
   }
 };
 
@@ -33,9 +35,9 @@ struct BuiltGraph {
 /// Edges and areas of a triangle mesh. Duplicate positions become one vertex (seams close); triangles with a repeated
 /// vertex or no area are left out and counted; edges of one triangle make boundary vertices; edges of more than two are
 /// counted and kept. Normals are area-weighted; a closed component that winds inwards gets its normals turned outwards.
-/// Non-finite positions and the triangles at them are left out. Vertices without a triangle stay, isolated; those farther than
-/// three mean edge lengths from the surface are flagged.
-/// Throws InvalidInput when a triangle names a vertex that is not there. Cost: O(n), about 150 bytes per vertex.
+/// Non-finite positions and the triangles at them are left out. Vertices without a triangle stay, isolated; those
+/// farther than three mean edge lengths from the surface are flagged. Throws InvalidInput when a triangle names a
+/// vertex that is not there. Cost: O(n), about 150 bytes per vertex.
 [[nodiscard]] BuiltGraph graph_from_mesh(std::span<const Vec3> positions, std::span<const Triangle> triangles,
                                          const RunContext& context = {});
 

@@ -43,7 +43,8 @@ struct FieldsOptions {
 
   template <class Self, class Visitor>
   static void describe(Self& o, Visitor&& visit) {
-    visit(OptionInfo{"adaptive", "", "Choose curvature method, passes and denoising by the input and its noise.", 0, 1}, o.adaptive);
+    visit(OptionInfo{"adaptive", "", "Choose curvature method, passes and denoising by the input and its noise.", 0, 1},
+          o.adaptive);
     visit(OptionInfo{"denoise", "", "Non-local means on the shape index.", 0, 1}, o.denoise);
     visit(OptionInfo{"retinex", "", "Split the shape index into illumination and reflectance.", 0, 1}, o.retinex);
     visit(OptionInfo{"segment", "", "Cut the reflectance into segments.", 0, 1}, o.segment);
@@ -61,10 +62,10 @@ struct FieldsOptions {
 
 /// Per vertex of a SurfaceGraph; arrays of stages that were switched off are empty.
 struct SurfaceFields {
-  double noise = 0.0;                     ///< sigma, [input length unit]
-  bool denoised = false;                  ///< non-local means ran
+  double noise = 0.0;                                          ///< sigma, [input length unit]
+  bool denoised = false;                                       ///< non-local means ran
   CurvatureMethod curvature_method = CurvatureMethod::Taubin;  ///< the one used
-  int curvature_passes = 0;               ///< the number used
+  int curvature_passes = 0;                                    ///< the number used
   std::vector<double> k1, k2;             ///< [1 / input length unit] principal curvatures, convex positive
   std::vector<double> curvedness;         ///< [1 / input length unit]
   std::vector<double> shape_index;        ///< [1] in [-1, 1], denoised when asked for
@@ -73,7 +74,7 @@ struct SurfaceFields {
   std::vector<double> reflectance;        ///< [1] in [-log 2, log 2]
   std::vector<std::uint32_t> segment;     ///< labels from 0
   std::size_t num_segments = 0;
-  std::vector<double> importance;         ///< [1] density of samples that the shape asks for, see sampling_density()
+  std::vector<double> importance;  ///< [1] density of samples that the shape asks for, see sampling_density()
 };
 
 /// Runs the stages over a graph: noise, curvature, shape index, non-local means, Retinex, segmentation, importance
@@ -83,9 +84,9 @@ struct SurfaceFields {
                                            const RunContext& context = {});
 
 struct FieldsResult {
-  Geometry geometry;  ///< the input with shape_index, curvedness, illumination, reflectance, segment, importance
-  double noise = 0.0;            ///< sigma, [input length unit]
-  double mean_edge_length = 0.0; ///< h, [input length unit]
+  Geometry geometry;   ///< the input with shape_index, curvedness, illumination, reflectance, segment, importance
+  double noise = 0.0;  ///< sigma, [input length unit]
+  double mean_edge_length = 0.0;  ///< h, [input length unit]
   bool denoised = false;
   CurvatureMethod curvature_method = CurvatureMethod::Taubin;
   std::size_t num_segments = 0;

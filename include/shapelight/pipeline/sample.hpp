@@ -30,8 +30,8 @@ enum class SamplingMethod : std::uint8_t { Shape, Random, Voxel, Stratified, Far
 /// How many points to keep: exactly one member is set.
 struct SampleSize {
   std::optional<std::uint64_t> count;  ///< [points]
-  std::optional<double> ratio;         ///< [1] share of the finite points, in (0, 1]; rounded to the nearest, at least 1
-  std::optional<double> spacing;       ///< [input length unit] see the method for what it bounds
+  std::optional<double> ratio;    ///< [1] share of the finite points, in (0, 1]; rounded to the nearest, at least 1
+  std::optional<double> spacing;  ///< [input length unit] see the method for what it bounds
 };
 
 /// Throws InvalidInput unless exactly one member is set and in range.
@@ -41,15 +41,16 @@ void validate(const SampleSize& size);
 struct SampleOptions {
   Preset preset = Preset::Detail;  ///< Paper: the paper's sampler in place of ours
   SamplingMethod method = SamplingMethod::Shape;
-  double local_weight = 0.65;      ///< [1] T of eq. 14
-  bool skip_boundary = false;      ///< leave out points on the border: in registration they have no counterpart
-  std::uint64_t seed = 0;          ///< of the methods that draw at random
-  FieldsOptions fields;            ///< of method Shape
+  double local_weight = 0.65;  ///< [1] T of eq. 14
+  bool skip_boundary = false;  ///< leave out points on the border: in registration they have no counterpart
+  std::uint64_t seed = 0;      ///< of the methods that draw at random
+  FieldsOptions fields;        ///< of method Shape
 
   template <class Self, class Visitor>
   static void describe(Self& o, Visitor&& visit) {
     visit(OptionInfo{"method", "", "How points are chosen.", 0, 0}, o.method);
-    visit(OptionInfo{"local-weight", "1", "Share of points chosen for local detail (the paper's T).", 0, 1}, o.local_weight);
+    visit(OptionInfo{"local-weight", "1", "Share of points chosen for local detail (the paper's T).", 0, 1},
+          o.local_weight);
     visit(OptionInfo{"skip-boundary", "", "Leave out points on the border of an open surface.", 0, 1}, o.skip_boundary);
     visit(OptionInfo{"seed", "", "Seed of the methods that draw at random.", 0, 0x1.0p64}, o.seed);
     FieldsOptions::describe(o.fields, visit);
@@ -59,11 +60,11 @@ struct SampleOptions {
 [[nodiscard]] SampleOptions sample_preset(Preset preset);
 
 struct SampleResult {
-  std::vector<Index> indices;  ///< input indices, unique, in the order of selection; of method Shape a ranking
-  std::size_t usable = 0;      ///< finite points of the input
-  std::size_t candidates = 0;  ///< of those, distinct, not flagged, and not skipped
-  std::size_t last_resort = 0; ///< chosen although flagged or duplicate, since the count asked for it
-  double noise = 0.0;          ///< sigma, [input length unit]; method Shape
+  std::vector<Index> indices;   ///< input indices, unique, in the order of selection; of method Shape a ranking
+  std::size_t usable = 0;       ///< finite points of the input
+  std::size_t candidates = 0;   ///< of those, distinct, not flagged, and not skipped
+  std::size_t last_resort = 0;  ///< chosen although flagged or duplicate, since the count asked for it
+  double noise = 0.0;           ///< sigma, [input length unit]; method Shape
   bool denoised = false;
   GraphDiagnostics diagnostics;
 };

@@ -18,20 +18,22 @@ struct PaperSamplingOptions {
 
   template <class Self, class Visitor>
   static void describe(Self& o, Visitor&& visit) {
-    visit(OptionInfo{"local-weight", "1", "Share of points chosen for local detail (the paper's T).", 0, 1}, o.local_weight);
-    visit(OptionInfo{"voxel-size", "input length units", "Voxels of the paper's global sampling; 0: from area and count.", 0, 1e300},
+    visit(OptionInfo{"local-weight", "1", "Share of points chosen for local detail (the paper's T).", 0, 1},
+          o.local_weight);
+    visit(OptionInfo{"voxel-size", "input length units",
+                     "Voxels of the paper's global sampling; 0: from area and count.", 0, 1e300},
           o.voxel_size);
   }
 };
 
-/// The paper's sampling, as literally as it can be read (section II.D, eq. 13, 14): round(T n) local points, then global
-/// ones from those not yet chosen, exactly target.count in all.
+/// The paper's sampling, as literally as it can be read (section II.D, eq. 13, 14): round(T n) local points, then
+/// global ones from those not yet chosen, exactly target.count in all.
 ///
 /// - Local: every segment gets a quota by its size (largest remainder) and gives the points with the largest |s|.
 /// - Global: voxels over the bounding box; H = entropy of a histogram of s over the voxel's points in 32 bins (eq. 13
-///   with one probability per vertex, as printed, is always log2 of their number); quota in proportion to 1 + H; in each
-///   voxel first the point nearest to the centroid, then the farthest from those chosen; no two chosen points of adjacent
-///   voxels closer than half sqrt(area / n_G), a distance that is relaxed by 0.7 until all quotas are filled.
+///   with one probability per vertex, as printed, is always log2 of their number); quota in proportion to 1 + H; in
+///   each voxel first the point nearest to the centroid, then the farthest from those chosen; no two chosen points of
+///   adjacent voxels closer than half sqrt(area / n_G), a distance that is relaxed by 0.7 until all quotas are filled.
 ///
 /// Local points first in the result. It covers features worse than farthest points do at 2 to 5 %, which the
 /// documentation shows; sample_by_shape() is the better way.

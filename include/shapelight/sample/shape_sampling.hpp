@@ -16,7 +16,8 @@ struct ShapeSamplingOptions {
 
   template <class Self, class Visitor>
   static void describe(Self& o, Visitor&& visit) {
-    visit(OptionInfo{"local-weight", "1", "Share of points chosen for local detail (the paper's T).", 0, 1}, o.local_weight);
+    visit(OptionInfo{"local-weight", "1", "Share of points chosen for local detail (the paper's T).", 0, 1},
+          o.local_weight);
   }
 };
 
@@ -29,9 +30,9 @@ struct ShapeFields {
   bool noisy = false;                         ///< the floor of the surface variation is noise: subtract it
 };
 
-/// Density of samples that the shape asks for: w = max(0.15, 0.3 N(A) + 0.7 N(B^1.5)), where A is the squared curvedness
-/// times (0.5 + |s|)(1 + 4|R|), averaged over the 1-ring, B the surface variation, and N scales to an area mean of 1
-/// with values capped at 6 means. Not-finite field values count as 0. Outliers and isolated vertices get 0.
+/// Density of samples that the shape asks for: w = max(0.15, 0.3 N(A) + 0.7 N(B^1.5)), where A is the squared
+/// curvedness times (0.5 + |s|)(1 + 4|R|), averaged over the 1-ring, B the surface variation, and N scales to an area
+/// mean of 1 with values capped at 6 means. Not-finite field values count as 0. Outliers and isolated vertices get 0.
 /// Source: paper, sections II.A-II.B for s and R; the density is ours.
 /// Pre: every non-empty field has graph.size() values (InvalidInput). Cost: O(n + m).
 [[nodiscard]] std::vector<double> sampling_density(const SurfaceGraph& graph, const ShapeFields& fields,
