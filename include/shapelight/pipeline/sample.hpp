@@ -70,7 +70,7 @@ struct SampleResult {
 };
 
 /// Keeps the points that carry the shape: exactly as many as asked for, none twice (paper, section II.D).
-/// Flagged strays, isolated vertices and duplicates are chosen last, and only when the count leaves no other way;
+/// Flagged strays and duplicates are chosen last, and only when the count leaves no other way;
 /// skipped boundary points and non-finite ones never.
 /// Throws InvalidInput (options, or not exactly one size), TargetUnreachable (fewer points can be chosen than asked
 /// for; the message says how many), Cancelled. Same result for any RunContext and any order of the input.
