@@ -153,8 +153,9 @@ def markdown(rows):
     for title, group in groups(list(relative_to_reference(rows))):
         if not group:
             continue
+        flagged = {True: ", {strays} flagged", False: ""}
         names = ", ".join(dict.fromkeys(
-            f"{r['input']} ({r['points']} points" + (f", {r['strays']} flagged)" if r["strays"] else ")") for r in group))
+            ("{input} ({points} points" + flagged[row["strays"] > 0] + ")").format(**row) for row in group))
         parts += [f"### {title}", f"{names}. Geometric mean over the inputs (worst one).", *tables(group)]
     return "\n\n".join(parts) + "\n"
 
