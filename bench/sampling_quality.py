@@ -29,7 +29,7 @@ DISTANCES = ("feature_coverage_mean", "coverage_mean", "coverage_max", "surface_
 
 
 class Input:
-    """A file, or its points as a raw cloud; positions are relative to the centre, so that float32 peers lose nothing."""
+    """A file, or its points as a raw cloud; positions relative to the centre, so that float32 peers lose nothing."""
 
     def __init__(self, tool, path, as_cloud, folder):
         self.name, self.kind = path.stem, tool.run("info", path)["input"]["kind"]
@@ -54,7 +54,8 @@ def triangles_of(tool, path, folder):
     tool.run("convert", path, off, "--force")
     lines = [line for line in off.read_text().splitlines() if line and not line.startswith("#")]
     num_vertices, num_faces = map(int, lines[1].split()[:2])
-    return np.array([line.split()[1:4] for line in lines[2 + num_vertices:2 + num_vertices + num_faces]], dtype=np.int32)
+    faces = lines[2 + num_vertices:2 + num_vertices + num_faces]
+    return np.array([line.split()[1:4] for line in faces], dtype=np.int32)
 
 
 def on_surface(tool, data):
@@ -111,7 +112,8 @@ def cell(rows, sampler, ratio, name):
 
 def table(rows, columns):
     """One line per sampler; columns: (title, ratio, name of the figure)."""
-    lines = ["| sampler | " + " | ".join(title for title, _, _ in columns) + " |", "| --- |" + " ---: |" * len(columns)]
+    lines = ["| sampler | " + " | ".join(title for title, _, _ in columns) + " |",
+             "| --- |" + " ---: |" * len(columns)]
     for sampler in dict.fromkeys(row["sampler"] for row in rows):
         lines.append(f"| {sampler} | " + " | ".join(cell(rows, sampler, r, name) for _, r, name in columns) + " |")
     return "\n".join(lines)
@@ -121,12 +123,13 @@ def tables(rows):
     def by_ratio(name):
         return table(rows, [(f"{100 * ratio:g} %", ratio, name) for ratio in RATIOS])
 
-    parts = ["Mean distance of feature points to the sample, ratio to farthest point:", by_ratio("feature_coverage_mean")]
+    parts = ["Mean distance of feature points to the sample, ratio to farthest point:",
+             by_ratio("feature_coverage_mean")]
     parts += ["Largest gap, ratio to farthest point:", by_ratio("coverage_max")]
     if any(row["strays"] > 0 for row in rows):
         parts += ["The same without the points that shapelight flags as strays:", by_ratio("surface_gap")]
-    parts += ["At 10 %: mean distance of all points to the sample (ratio), standard deviation of the spacing over its mean, CPU "
-              "microseconds per input point:",
+    parts += ["At 10 %: mean distance of all points to the sample (ratio), standard deviation of the spacing over its "
+              "mean, CPU microseconds per input point:",
               table(rows, [("mean distance", 0.10, "coverage_mean"), ("spacing", 0.10, "spacing_cv"),
                            ("CPU us/point", 0.10, "microseconds")])]
     return parts
@@ -150,8 +153,9 @@ def markdown(rows):
     for title, group in groups(list(relative_to_reference(rows))):
         if not group:
             continue
+        flagged = {True: ", {strays} flagged", False: ""}
         names = ", ".join(dict.fromkeys(
-            f"{r['input']} ({r['points']} points{', ' + str(r['strays']) + ' flagged' if r['strays'] else ''})" for r in group))
+            ("{input} ({points} points" + flagged[row["strays"] > 0] + ")").format(**row) for row in group))
         parts += [f"### {title}", f"{names}. Geometric mean over the inputs (worst one).", *tables(group)]
     return "\n\n".join(parts) + "\n"
 
@@ -162,6 +166,13 @@ def read_csv(path):
                  for k, v in row.items()} for row in csv.DictReader(file)]
 
 
+def write_csv(path, rows):
+    with open(path, "w", newline="") as file:
+        writer = csv.DictWriter(file, rows[0].keys())
+        writer.writeheader()
+        writer.writerows(rows)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("files", nargs="*", type=Path)
@@ -169,6 +180,8 @@ def main():
     parser.add_argument("--output", type=Path, default=Path("quality"), help="OUTPUT.csv and OUTPUT.md are written")
     parser.add_argument("--merge", nargs="*", type=Path, default=[], help="CSV files of earlier runs to include")
     arguments = parser.parse_args()
+    if not arguments.files and not arguments.merge:
+        parser.error("expected files to measure, or --merge")
     tool = judge.Shapelight(arguments.shapelight)
     rows = [row for path in arguments.merge for row in read_csv(path)]
     folder = Path(tempfile.mkdtemp(dir=tool.folder.name))
@@ -178,10 +191,8 @@ def main():
         for data in kinds:
             print(f"{data.name} as {data.kind}, {len(data.points)} points", file=sys.stderr, flush=True)
             rows += measure(tool, data)
-            with open(arguments.output.with_suffix(".csv"), "w", newline="") as file:
-                writer = csv.DictWriter(file, rows[0].keys())
-                writer.writeheader()
-                writer.writerows(rows)
+            write_csv(arguments.output.with_suffix(".csv"), rows)  # after each, so that a long run can be cut short
+    write_csv(arguments.output.with_suffix(".csv"), rows)
     arguments.output.with_suffix(".md").write_text(markdown(rows))
 
 

@@ -168,7 +168,9 @@ void print_stages(const Geometry& geometry) {
 struct PointAdaptor {
   const std::vector<Vec3>& points;
   [[nodiscard]] std::size_t kdtree_get_point_count() const { return points.size(); }
-  [[nodiscard]] double kdtree_get_pt(std::size_t i, std::size_t axis) const { return points[i][static_cast<long>(axis)]; }
+  [[nodiscard]] double kdtree_get_pt(std::size_t i, std::size_t axis) const {
+    return points[i][static_cast<long>(axis)];
+  }
   template <class Box>
   bool kdtree_get_bbox(Box&) const {
     return false;

@@ -84,14 +84,14 @@ def markdown(rows):
         lines += [f"### {'Clean' if level == 0.0 else f'Noise, {100 * level:g} % of the diagonal'}", "",
                   f"{names}. On or next to features by chance: {100 * chance:.0f} %.", "",
                   "| variant | NLM ran on | " + " | ".join(
-                      f"features {100 * r:g} % | gap {100 * r:g} % (worst) | on features {100 * r:g} %" for r in RATIOS) + " |",
+                      f"features {r:.0%} | gap {r:.0%} (worst) | on features {r:.0%}" for r in RATIOS) + " |",
                   "| --- | ---: |" + " ---: |" * 3 * len(RATIOS)]
         for name in VARIANTS:
             of = [row for row in here if row["variant"] == name]
             cells = [f"{sum(r['denoised'] for r in of) // len(RATIOS)} of {len(of) // len(RATIOS)}"]
             for ratio in RATIOS:
                 at = [row for row in of if row["ratio"] == ratio]
-                mean = {key: np.exp(np.mean([np.log(max(row[key], 1e-9)) for row in at])) for key in ("features", "gap")}
+                mean = {key: np.exp(np.mean([np.log(row[key]) for row in at])) for key in ("features", "gap")}
                 cells += [f"{mean['features']:.2f}", f"{mean['gap']:.2f} ({max(row['gap'] for row in at):.2f})",
                           f"{100 * np.mean([row['on_features'] for row in at]):.0f} %"]
             lines.append(f"| {name} | " + " | ".join(cells) + " |")

@@ -3,9 +3,9 @@
 
   tools/option_tables.py [--check] [--shapelight build/release/bin/shapelight]
 
-A table stands between `<!-- options: COMMAND [/ GROUP] -->` and `<!-- end of options -->`. GROUP is a heading of the help
-("Options", "Stage options", "Common options"); without it, all of them. --check changes nothing and ends with 1 when a
-table is out of date.
+A table stands between `<!-- options: COMMAND [/ GROUP] -->` and `<!-- end of options -->`. GROUP is a heading of the
+help ("Options", "Stage options", "Common options"); without it, all of them. --check changes nothing and ends with 1
+when a table is out of date.
 """
 
 import argparse
