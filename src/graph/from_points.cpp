@@ -14,12 +14,11 @@ namespace {
 
 constexpr double kSparseLocal = 4.0;     // r_k against the median r_k of the neighbours
 constexpr double kSparseGlobal = 6.0;    // r_k against the median r_k of the cloud
-constexpr std::size_t kStrayFans = 2;    // a stray is near to few dense points; sparse surface points to many...
-constexpr double kStrayHeight = 0.3;     // ...and it stands off their tangent planes: mean |n'.d| / |d|
+constexpr double kSparseShare = 0.02;    // when more points exceed that, the cloud is uneven by nature, as lidar is
+constexpr double kStrayHeight = 0.3;     // a stray stands off the tangent planes of its nearest: mean |n'.d| / |d|
 constexpr std::size_t kStrayGroup = 50;  // [points] small groups apart from everything are strays as well
-constexpr double kBoundaryOffset =
-    0.4;                                // |centroid of neighbours| / mean distance: 0 inside, 0.64 on a straight border
-constexpr int kWeightLevels = 1 << 16;  // resolution of 1 - |n.n'| in the spanning tree
+constexpr double kBoundaryOffset = 0.4;  // |mean of neighbours| / mean distance: 0 inside, 0.64 on a straight border
+constexpr int kWeightLevels = 1 << 16;   // resolution of 1 - |n.n'| in the spanning tree
 
 // Row i: the k nearest of vertex i, nearest first, kNoIndex at the end where there are fewer.
 struct NearestTable {
@@ -130,7 +129,9 @@ std::vector<Sparse> find_sparse(const NearestTable& nearest, std::span<const dou
   const std::size_t n = radius.size();
   std::vector<double> sorted(radius.begin(), radius.end());
   std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(n / 2), sorted.end());
-  const double global = sorted[n / 2];
+  const double limit = kSparseGlobal * sorted[n / 2];
+  const auto beyond = std::count_if(radius.begin(), radius.end(), [&](double r) { return r > limit; });
+  const bool is_even = static_cast<double>(beyond) <= kSparseShare * static_cast<double>(n);
   std::vector<Sparse> sparse(n, Sparse::No);
   parallel::for_chunks(context, n, [&](std::size_t begin, std::size_t end) {
     std::vector<double> around;
@@ -139,7 +140,7 @@ std::vector<Sparse> find_sparse(const NearestTable& nearest, std::span<const dou
       for (const Index j : nearest.of(i)) around.push_back(radius[j]);
       if (around.empty()) continue;
       std::nth_element(around.begin(), around.begin() + static_cast<std::ptrdiff_t>(around.size() / 2), around.end());
-      if (radius[i] > kSparseGlobal * global)
+      if (is_even && radius[i] > limit)
         sparse[i] = Sparse::Globally;
       else if (radius[i] > kSparseLocal * around[around.size() / 2])
         sparse[i] = Sparse::Locally;
@@ -161,10 +162,11 @@ void flag_strays(SurfaceGraph& graph, const NearestTable& nearest, std::span<con
                  const RunContext& context) {
   const std::size_t n = graph.size();
   const std::vector<Sparse> sparse = find_sparse(nearest, radius, context);
-  std::vector<Index> fans(n, 0);  // dense points that count this one among their nearest
+  // A stray is near to no dense point, while sparse points of a surface are near to those beside them.
+  std::vector<std::uint8_t> near_dense(n, 0);
   for (std::size_t i = 0; i < n; ++i) {
     if (sparse[i] != Sparse::No) continue;
-    for (const Index j : nearest.of(i)) ++fans[j];
+    for (const Index j : nearest.of(i)) near_dense[j] = 1;
   }
   const std::vector<Index> root = component_roots(graph);
   std::vector<Index> component_size(n, 0);
@@ -173,7 +175,7 @@ void flag_strays(SurfaceGraph& graph, const NearestTable& nearest, std::span<con
   for (std::size_t i = 0; i < n; ++i) {
     if (sparse[i] == Sparse::No) continue;
     const bool apart = sparse[i] == Sparse::Globally && component_size[root[i]] <= group;
-    const bool floats = fans[i] <= kStrayFans && height_over(graph, nearest.of(i), i) > kStrayHeight;
+    const bool floats = near_dense[i] == 0 && height_over(graph, nearest.of(i), i) > kStrayHeight;
     graph.outlier[i] = apart || floats;
   }
 }

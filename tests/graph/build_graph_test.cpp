@@ -159,6 +159,18 @@ TEST(GraphFromPoints, StraysAreFlaggedAndSurfacePointsAreNot) {
   for (std::size_t i = 5000; i < points.size(); ++i) EXPECT_EQ(built.graph.outlier[built.graph.vertex_of_point[i]], 1);
 }
 
+TEST(GraphFromPoints, AScanThatThinsOutWithRangeHasNoStrays) {
+  std::vector<Vec3> points;  // rings on the ground around a spinning lidar, ever farther apart
+  for (int ring = 0; ring < 60; ++ring) {
+    const double range = std::pow(1.08, ring);
+    for (int step = 0; step < 200; ++step) {
+      const double angle = 2.0 * std::numbers::pi * (step + 0.5 * random01(5, 0, ring * 200 + step)) / 200.0;
+      points.emplace_back(range * std::cos(angle), range * std::sin(angle), 0.0);
+    }
+  }
+  EXPECT_EQ(graph_from_points(points, std::nullopt).diagnostics.outliers, 0U);
+}
+
 TEST(GraphFromPoints, OpenPatchHasABorder) {
   std::vector<Vec3> points;
   for (int y = 0; y < 20; ++y) {

@@ -51,9 +51,9 @@ struct BuiltGraph {
 /// Symmetric k-nearest-neighbour graph of a raw cloud (i ~ j when either is among the other's k nearest). Area is
 /// pi r_k^2 / k. Normals by principal components of the k nearest, oriented along the minimum spanning tree of
 /// 1 - |n_i . n_j| (Hoppe et al. 1992) and, per component, towards the viewpoint or, without one, outwards.
-/// Boundary: the neighbours' centroid lies off to one side. Strays: points with r_k above 4 times the
-/// median of the neighbours', or 6 times that of the cloud, that few dense points count among their nearest and that
-/// stand off their neighbours' tangent planes; and small groups apart from everything.
+/// Boundary: the neighbours' centroid lies off to one side. Strays: points with r_k above 4 times the median of the
+/// neighbours', or 6 times that of an evenly sampled cloud, that no dense point counts among its nearest and that stand
+/// off their neighbours' tangent planes; and small groups apart from everything.
 /// Cost: O(n log n), dominated by the neighbour search.
 [[nodiscard]] BuiltGraph graph_from_points(std::span<const Vec3> positions, const std::optional<Vec3>& viewpoint,
                                            const GraphOptions& options = {}, const RunContext& context = {});
