@@ -160,12 +160,13 @@ TEST(GraphFromPoints, StraysAreFlaggedAndSurfacePointsAreNot) {
 }
 
 TEST(GraphFromPoints, AScanThatThinsOutWithRangeHasNoStrays) {
-  std::vector<Vec3> points;  // rings on the ground around a spinning lidar, ever farther apart
+  std::vector<Vec3> points;  // rough ground around a spinning lidar, rings ever farther apart
   for (int ring = 0; ring < 60; ++ring) {
     const double range = std::pow(1.08, ring);
     for (int step = 0; step < 200; ++step) {
       const double angle = 2.0 * std::numbers::pi * (step + 0.5 * random01(5, 0, ring * 200 + step)) / 200.0;
-      points.emplace_back(range * std::cos(angle), range * std::sin(angle), 0.0);
+      const double height = 0.3 * range * random01(6, 0, ring * 200 + step);
+      points.emplace_back(range * std::cos(angle), range * std::sin(angle), height);
     }
   }
   EXPECT_EQ(graph_from_points(points, std::nullopt).diagnostics.outliers, 0U);
