@@ -15,8 +15,9 @@ ALLOWED = {
     "spatial": BASE | {"spatial"},
     "graph": NEIGHBORHOOD,
     **{stage: NEIGHBORHOOD | {stage} for stage in STAGES},
+    "simplify": BASE | {"spatial", "simplify"},
     "metrics": BASE | {"spatial", "metrics"},
-    "pipeline": NEIGHBORHOOD | STAGES | {"metrics", "pipeline"},
+    "pipeline": NEIGHBORHOOD | STAGES | {"simplify", "metrics", "pipeline"},
     "render": NEIGHBORHOOD | {"io", "render"},
 }
 ONLY_IN = {  # header -> the only files that may include it

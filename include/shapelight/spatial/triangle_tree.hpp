@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "shapelight/core/run_context.hpp"
+#include "shapelight/data/triangle_mesh.hpp"
+
+namespace shapelight {
+
+/// Closest points on a triangle mesh: a tree of bounding boxes over its triangles.
+class TriangleTree {
+ public:
+  struct Hit {
+    Index triangle = kNoIndex;
+    Vec3 point = Vec3::Zero();  ///< closest point, on the triangle
+    double distance_sq = 0.0;   ///< [squared length]
+  };
+
+  TriangleTree();
+  /// Keeps a copy of what it needs. Throws InvalidInput (index out of range, non-finite corner, no triangle).
+  explicit TriangleTree(const TriangleMesh& mesh, const RunContext& context = {});
+  ~TriangleTree();
+  TriangleTree(TriangleTree&&) noexcept;
+  TriangleTree& operator=(TriangleTree&&) noexcept;
+
+  [[nodiscard]] std::size_t size() const;
+  /// The closest triangle; of equally close ones the smallest index. `hint`: a triangle thought to be near (or
+  /// kNoIndex); it speeds the search up and never changes the distance. Safe to call from many threads.
+  [[nodiscard]] Hit closest(const Vec3& query, Index hint = kNoIndex) const;
+  /// closest() of many points, in parallel.
+  [[nodiscard]] std::vector<Hit> closest(std::span<const Vec3> queries, const RunContext& context = {}) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Closest point to `query` on the triangle (a, b, c), which may be degenerate (Ericson 2005, section 5.1.5).
+[[nodiscard]] Vec3 closest_point_on_triangle(const Vec3& query, const Vec3& a, const Vec3& b, const Vec3& c);
+
+}  // namespace shapelight
