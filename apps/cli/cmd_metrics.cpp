@@ -22,8 +22,8 @@ struct MetricsArguments {
 // The surface of a mesh or a range image; no triangles of a cloud.
 TriangleMesh surface_of(const Geometry& geometry) {
   if (!geometry.grid || !geometry.triangles.empty()) return {geometry.positions, geometry.triangles};
-  return {geometry.positions, range_image_triangles(geometry.positions, *geometry.grid, geometry.viewpoint,
-                                                    GraphOptions{}.depth_jump)};
+  return {geometry.positions,
+          range_image_triangles(geometry.positions, *geometry.grid, geometry.viewpoint, GraphOptions{}.depth_jump)};
 }
 
 // Triangles at points that were never measured are no surface.
@@ -135,9 +135,10 @@ int run_metrics(const MetricsArguments& arguments, const DescribedFlags<SurfaceD
     run.options = options_json(options);
     run.points_in = reference.size();
     run.points_out = test.size();
-    report_surfaces(run.timed("measure", [&] {
-      return measure_surface_distance(reference_surface, test_surface, options, run.context());
-    }), run);
+    report_surfaces(
+        run.timed("measure",
+                  [&] { return measure_surface_distance(reference_surface, test_surface, options, run.context()); }),
+        run);
   }
   if (wants_distances) write_distances(arguments, std::move(test), reference_surface, run);
   run.finish();
@@ -159,7 +160,8 @@ Command add_metrics_command(CLI::App& app) {
       ->type_name("OUT");
   command->footer(
       "Meshes and range images are measured as surfaces: forward from REFERENCE to TEST, backward, and both together.\n"
-      "With a cloud on either side, points are measured: coverage and spacing. Features are the tenth of the reference\n"
+      "With a cloud on either side, points are measured: coverage and spacing. Features are the tenth of the "
+      "reference\n"
       "with the largest surface variation over 30 neighbours.");
   auto flags = std::make_shared<DescribedFlags<SurfaceDistanceOptions>>(
       *command, std::initializer_list<std::string_view>{"samples", "seed"});

@@ -59,8 +59,8 @@ struct Totals {
 };
 
 // Distances of the samples; their angles too, kNoAngle where there is none.
-Totals measure_samples(const Surface& from, const Surface& to, const SurfaceSamples& samples,
-                       std::span<float> angles, const RunContext& context) {
+Totals measure_samples(const Surface& from, const Surface& to, const SurfaceSamples& samples, std::span<float> angles,
+                       const RunContext& context) {
   const auto chunk = [&](std::size_t begin, std::size_t end) {
     Totals totals;
     Index at = samples.triangle_before(begin), near = kNoIndex;
@@ -150,7 +150,8 @@ SurfaceDistance measure_surface_distance(const TriangleMesh& reference, const Tr
   const DistanceSummary &f = forward.distance, &b = backward.distance;
   result.forward = f;
   result.backward = b;
-  result.symmetric = {0.5 * (f.mean + b.mean), std::sqrt(0.5 * (f.rms * f.rms + b.rms * b.rms)), std::max(f.max, b.max)};
+  result.symmetric = {0.5 * (f.mean + b.mean), std::sqrt(0.5 * (f.rms * f.rms + b.rms * b.rms)),
+                      std::max(f.max, b.max)};
   result.vertex_rms = forward.vertex_rms;
   result.normal_deviation = summarize(angles);
   context.report(1.0);

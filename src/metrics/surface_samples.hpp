@@ -38,7 +38,8 @@ class SurfaceSamples {
 
   /// Sample k. `near`: the triangle of a sample at most k, from where the search goes on; 0 is always right.
   [[nodiscard]] Sample at(std::size_t k, Index near) const {
-    const double area = (static_cast<double>(k) + random01(seed_, stream_, k)) / static_cast<double>(count_) * this->area();
+    const double area =
+        (static_cast<double>(k) + random01(seed_, stream_, k)) / static_cast<double>(count_) * this->area();
     Index triangle = near;
     while (triangle + 1 < mesh_.triangles.size() && area_before_[triangle + 1] <= area) ++triangle;
     const double step = static_cast<double>(k);

@@ -135,8 +135,8 @@ FourDistances box_distances(const BoxNode& node, const QueryBox& query) {
 
 }  // namespace
 
-// Everything is moved to the middle of the mesh and scaled by a power of two into [-1, 1]: boxes keep their precision at
-// any offset, squares neither overflow nor vanish, and scaling rounds nothing.
+// Everything is moved to the middle of the mesh and scaled by a power of two into [-1, 1]: boxes keep their precision
+// at any offset, squares neither overflow nor vanish, and scaling rounds nothing.
 struct TriangleTree::Impl {
   Vec3 center = Vec3::Zero();
   double scale = 1.0;

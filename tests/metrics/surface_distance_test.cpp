@@ -35,9 +35,10 @@ TriangleMesh square(Index n) {
 }
 
 std::array<double, 14> numbers_of(const SurfaceDistance& d) {
-  return {d.forward.mean,   d.forward.rms,   d.forward.max,   d.backward.mean,        d.backward.rms,
-          d.backward.max,   d.symmetric.mean, d.symmetric.rms, d.symmetric.max,        d.vertex_rms,
-          d.diagonal,       static_cast<double>(d.samples),   d.normal_deviation.rms, d.normal_deviation.p95};
+  return {d.forward.mean,         d.forward.rms,         d.forward.max,    d.backward.mean,
+          d.backward.rms,         d.backward.max,        d.symmetric.mean, d.symmetric.rms,
+          d.symmetric.max,        d.vertex_rms,          d.diagonal,       static_cast<double>(d.samples),
+          d.normal_deviation.rms, d.normal_deviation.p95};
 }
 
 void expect_all(const DistanceSummary& summary, double value, double tolerance) {
@@ -231,8 +232,8 @@ TEST(SurfaceSamples, EveryTriangleGetsItsShare) {
     near = sample.triangle;
     share[sample.triangle] += 1.0;
     const Triangle& t = mesh.triangles[sample.triangle];
-    const Vec3 on = closest_point_on_triangle(sample.point, mesh.positions[t[0]], mesh.positions[t[1]],
-                                              mesh.positions[t[2]]);
+    const Vec3 on =
+        closest_point_on_triangle(sample.point, mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]);
     EXPECT_LT((on - sample.point).norm(), 1e-15);
   }
   for (Index t = 0; t < share.size(); ++t) EXPECT_NEAR(share[t], 0.5 * area_normal(mesh, t).norm() * count, 2.0);

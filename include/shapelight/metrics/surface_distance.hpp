@@ -41,13 +41,13 @@ struct NormalDeviation {
 };
 
 struct SurfaceDistance {
-  DistanceSummary forward;     ///< from the reference to the test mesh
-  DistanceSummary backward;    ///< from the test mesh to the reference
-  DistanceSummary symmetric;   ///< mean of the means, root of the mean square, larger maximum
-  double vertex_rms = 0.0;     ///< root mean square over the vertices of the reference, to the test mesh
-  double diagonal = 0.0;       ///< of the reference's bounding box; scaled(1 / diagonal) is relative
+  DistanceSummary forward;           ///< from the reference to the test mesh
+  DistanceSummary backward;          ///< from the test mesh to the reference
+  DistanceSummary symmetric;         ///< mean of the means, root of the mean square, larger maximum
+  double vertex_rms = 0.0;           ///< root mean square over the vertices of the reference, to the test mesh
+  double diagonal = 0.0;             ///< of the reference's bounding box; scaled(1 / diagonal) is relative
   NormalDeviation normal_deviation;  ///< of both directions together
-  std::size_t samples = 0;     ///< [points] taken per surface
+  std::size_t samples = 0;           ///< [points] taken per surface
 };
 
 /// Measures how far two surfaces are apart, as Metro does (Cignoni, Rocchini and Scopigno 1998), with exact closest
