@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <numbers>
+
 #include "attribute_choice.hpp"
 #include "commands.hpp"
 #include "described_options.hpp"
@@ -77,11 +79,14 @@ nlohmann::ordered_json result_json(const SimplifyResult& result, const SimplifyO
                                  {"noise", result.noise},
                                  {"denoised", result.denoised}};
   if (result.measured) {
-    const auto [rms, max, diagonal] = *result.measured;
-    json["measured_rms_error"] = rms;
-    json["measured_max_error"] = max;
-    json["relative"] = {{"rms_error", diagonal > 0.0 ? rms / diagonal : 0.0},
-                        {"max_error", diagonal > 0.0 ? max / diagonal : 0.0}};
+    constexpr double kDegrees = 180.0 / std::numbers::pi;
+    const SurfaceDistance& distance = *result.measured;
+    const DistanceSummary relative = distance.symmetric.scaled(1.0 / distance.diagonal);
+    json["measured_rms_error"] = distance.symmetric.rms;
+    json["measured_max_error"] = distance.symmetric.max;
+    json["relative"] = {{"measured_rms_error", relative.rms}, {"measured_max_error", relative.max}};
+    json["normal_deviation_deg"] = {{"rms", distance.normal_deviation.rms * kDegrees},
+                                    {"p95", distance.normal_deviation.p95 * kDegrees}};
   }
   if (size.max_error) json["runs"] = result.runs;
   return json;
@@ -98,9 +103,10 @@ void say_result(const Run& run, const std::string& output, const SimplifyResult&
                         result.faces_in, enum_name(options.method), enum_name(options.ssim.placement)));
   }
   if (!result.measured) return;
-  const auto [rms, max, diagonal] = *result.measured;
-  run.say(fmt::format("measured both ways: rms {:.4g} ({:.3g} % of the diagonal), max {:.4g} ({:.3g} %)", rms,
-                      100.0 * rms / diagonal, max, 100.0 * max / diagonal));
+  const DistanceSummary& distance = result.measured->symmetric;
+  const DistanceSummary percent = distance.scaled(100.0 / result.measured->diagonal);
+  run.say(fmt::format("measured both ways: rms {:.4g} ({:.3g} % of the diagonal), max {:.4g} ({:.3g} %)", distance.rms,
+                      percent.rms, distance.max, percent.max));
 }
 
 int run_simplify(const SimplifyArguments& arguments, const DescribedFlags<SimplifyOptions>& flags,

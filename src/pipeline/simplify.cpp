@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pipeline/measure_error.hpp"
 #include "pipeline/simplify_guide.hpp"
 #include "pipeline/simplify_search.hpp"
 #include "pipeline/simplify_surface.hpp"
@@ -101,8 +100,8 @@ SimplifyTarget target_of(const SimplifySize& size, const Geometry& geometry, con
   return {.vertices = std::min(asked, simplifier.vertices()), .faces = 0};
 }
 
-MeasuredError measure(const Simplifier& simplifier, const SimplifiedMesh& result, const RunContext& context) {
-  return pipeline::measure_error(simplifier.surface().mesh, result.mesh, context);
+SurfaceDistance measure(const Simplifier& simplifier, const SimplifiedMesh& result, const RunContext& context) {
+  return measure_surface_distance(simplifier.surface().mesh, result.mesh, {}, context);
 }
 
 // The coarsest result within the bound.
@@ -118,7 +117,7 @@ SimplifiedMesh search_by_error(const Simplifier& simplifier, double bound, Simpl
   search.guess = first;
   try {  // quadrics are cheap and tell the order of magnitude
     const SimplifiedMesh rough = simplifier.run(SimplifyMethod::Qslim, {.vertices = first, .faces = 0}, slot(0));
-    const double error = measure(simplifier, rough, slot(0)).max;
+    const double error = measure(simplifier, rough, slot(0)).symmetric.max;
     search.guess = static_cast<std::size_t>(static_cast<double>(first) * std::clamp(error / bound, 0.01, 10.0));
   } catch (const TargetUnreachable&) {
     // The search finds out itself how far this goes.
@@ -128,12 +127,13 @@ SimplifiedMesh search_by_error(const Simplifier& simplifier, double bound, Simpl
   const pipeline::FoundCount found = pipeline::find_count(bound, search, [&](std::size_t count) {
     ++tries;
     SimplifiedMesh tried = simplifier.run({.vertices = count, .faces = 0}, slot(tries));
-    const MeasuredError error = measure(simplifier, tried, slot(tries));
-    if (error.max <= bound && (!best || tried.mesh.positions.size() < best->mesh.positions.size())) {
+    const SurfaceDistance distance = measure(simplifier, tried, slot(tries));
+    const double error = distance.symmetric.max;
+    if (error <= bound && (!best || tried.mesh.positions.size() < best->mesh.positions.size())) {
       best = std::move(tried);
-      result.measured = error;
+      result.measured = distance;
     }
-    return error.max;
+    return error;
   });
   result.runs = found.tries + 1;
   return std::move(*best);

@@ -11,6 +11,7 @@
 #include "shapelight/core/options.hpp"
 #include "shapelight/core/run_context.hpp"
 #include "shapelight/data/geometry.hpp"
+#include "shapelight/metrics/surface_distance.hpp"
 #include "shapelight/pipeline/fields.hpp"
 #include "shapelight/simplify/ssim.hpp"
 
@@ -71,13 +72,6 @@ struct SimplifyOptions {
 /// The preset's options for a placement. Throws InvalidInput for SimplifyPreset::Paper with Placement::Optimal.
 [[nodiscard]] SimplifyOptions simplify_preset(SimplifyPreset preset, Placement placement = Placement::Input);
 
-/// Distances between input and result, the larger of both directions.
-struct MeasuredError {
-  double rms = 0.0;       ///< [input length unit]
-  double max = 0.0;       ///< [input length unit]
-  double diagonal = 0.0;  ///< [input length unit] of the input's bounding box
-};
-
 struct SimplifyResult {
   Geometry geometry;                 ///< a mesh with the input's attributes; a cloud when the input was one
   std::vector<Index> source_vertex;  ///< per vertex: the input vertex it is, or (Placement::Optimal) descends from
@@ -87,7 +81,7 @@ struct SimplifyResult {
   double noise = 0.0;                ///< sigma, [input length unit]; of the methods that look at it
   bool denoised = false;             ///< the error was measured against a denoised surface
   MeshOddities oddities;
-  std::optional<MeasuredError> measured;  ///< with SimplifySize::max_error or SimplifyOptions::measure
+  std::optional<SurfaceDistance> measured;  ///< input to result; with SimplifySize::max_error or SimplifyOptions::measure
   std::size_t runs = 1;                   ///< simplifications that the search for max_error took
   std::vector<std::string> warnings;      ///< odd but usable things met, for people
 };
