@@ -10,7 +10,7 @@
 namespace shapelight::simplify {
 namespace {
 
-constexpr std::size_t kMaxTrials = 4;   // places tried per vertex, the most promising first
+constexpr std::size_t kMaxTrials = 6;   // places tried per vertex, the most promising first
 constexpr double kMinGain = 1e-3;       // share of the star's energy
 constexpr std::size_t kChunk = 64;
 
@@ -27,8 +27,7 @@ std::vector<Candidate> candidates(const MeasuredMesh& measured, const InputPlace
   std::vector<Candidate> found;
   const auto consider = [&](Index w) {
     if (w == kNoIndex || places.taken[w] || places.locked[w]) return;
-    const double change = model.change(places.position[w] - mesh.position[v]);
-    if (change < 0.0) found.push_back({w, change});
+    found.push_back({w, model.change(places.position[w] - mesh.position[v])});
   };
   if (mesh.is_on_line(v)) {
     for (const Index w : places.line[mesh.source[v]]) consider(w);

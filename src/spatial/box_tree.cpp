@@ -94,7 +94,8 @@ std::uint32_t best_cut(const std::array<Bin, kBins>& bins) {
   for (std::uint32_t k = 1; k < kBins; ++k) {
     grow(side.box, bins[k - 1].box);
     side.count += bins[k - 1].count;
-    const float cost = side.count > 0 ? half_area(side.box) * static_cast<float>(side.count) + right_cost[k] : kInfinity;
+    const float cost =
+        side.count > 0 ? half_area(side.box) * static_cast<float>(side.count) + right_cost[k] : kInfinity;
     if (cost < best_cost) {
       best_cost = cost;
       best = k;

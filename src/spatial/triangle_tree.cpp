@@ -114,29 +114,22 @@ struct QueryBox {
   }
 };
 
-using FourDistances = std::array<float, BoxNode::kWidth>;
-
 // Squared distances to the boxes of a node, never too long but for the few roundings here.
-FourDistances box_distances(const BoxNode& node, const QueryBox& query) {
-  FourDistances result;
-  for (std::size_t k = 0; k < BoxNode::kWidth; ++k) {
-    float distance_sq = 0.0f;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const float below = node.min[axis][k] - query.high[axis];
-      const float above = query.low[axis] - node.max[axis][k];
-      const float outside = below > above ? below : above;
-      const float distance = 0.0f > outside ? 0.0f : outside;  // in this order NaN gets through: an unused place
-      distance_sq += distance * distance;
-    }
-    result[k] = distance_sq;
+Float4 box_distances(const BoxNode& node, const QueryBox& query) {
+  Float4 distance_sq{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const Float4 below = node.min[axis] - query.high[axis], above = query.low[axis] - node.max[axis];
+    const Float4 outside = below > above ? below : above;
+    const Float4 distance = Float4{} > outside ? Float4{} : outside;  // in this order NaN gets through: an unused place
+    distance_sq += distance * distance;
   }
-  return result;
+  return distance_sq;
 }
 
 }  // namespace
 
-// Everything is moved to the middle of the mesh and scaled by a power of two into [-1, 1]: boxes keep their precision at
-// any offset, squares neither overflow nor vanish, and scaling rounds nothing.
+// Everything is moved to the middle of the mesh and scaled by a power of two into [-1, 1]: boxes keep their precision
+// at any offset, squares neither overflow nor vanish, and scaling rounds nothing.
 struct TriangleTree::Impl {
   Vec3 center = Vec3::Zero();
   double scale = 1.0;
@@ -226,7 +219,7 @@ void TriangleTree::Impl::search(const Vec3& query, Best& best) const {
       best.offer(corners[next & ~BoxNode::kItem], query);
     } else {
       const BoxNode& node = tree.nodes[next];
-      const FourDistances distance_sq = box_distances(node, query_box);
+      const Float4 distance_sq = box_distances(node, query_box);
       const std::size_t first = count;
       for (std::size_t k = 0; k < BoxNode::kWidth; ++k) {
         if (!(distance_sq[k] <= best.bound)) continue;

@@ -22,7 +22,8 @@ class TriangleTree {
   };
 
   TriangleTree();
-  /// Keeps a copy of what it needs. Throws InvalidInput (index out of range, non-finite corner, no triangle), Cancelled.
+  /// Keeps a copy of what it needs. Throws InvalidInput (index out of range, non-finite corner, no triangle),
+  /// Cancelled.
   explicit TriangleTree(const TriangleMesh& mesh, const RunContext& context = {});
   ~TriangleTree();
   TriangleTree(TriangleTree&&) noexcept;
