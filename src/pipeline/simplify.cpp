@@ -117,8 +117,10 @@ SimplifiedMesh search_by_error(const Simplifier& simplifier, double bound, Simpl
   const std::size_t first = std::max(search.least, share_of(kFirstGuess, simplifier.vertices()));
   search.guess = first;
   try {  // quadrics are cheap and tell the order of magnitude
-    const SimplifiedMesh rough = simplifier.run(SimplifyMethod::Qslim, {.vertices = first, .faces = 0}, slot(0));
-    const double error = measure(simplifier, rough, slot(0)).symmetric.max;
+    const RunContext part = slot(0);
+    const SimplifiedMesh rough = simplifier.run(SimplifyMethod::Qslim, {.vertices = first, .faces = 0},
+                                                part.phase(0.0, 0.7, "collapse"));
+    const double error = measure(simplifier, rough, part.phase(0.7, 1.0, "measure")).symmetric.max;
     search.guess = static_cast<std::size_t>(static_cast<double>(first) * std::clamp(error / bound, 0.01, 10.0));
   } catch (const TargetUnreachable&) {
     // The search finds out itself how far this goes.
@@ -127,8 +129,9 @@ SimplifiedMesh search_by_error(const Simplifier& simplifier, double bound, Simpl
   std::size_t tries = 0;
   const pipeline::FoundCount found = pipeline::find_count(bound, search, [&](std::size_t count) {
     ++tries;
-    SimplifiedMesh tried = simplifier.run({.vertices = count, .faces = 0}, slot(tries));
-    const SurfaceDistance distance = measure(simplifier, tried, slot(tries));
+    const RunContext part = slot(tries);
+    SimplifiedMesh tried = simplifier.run({.vertices = count, .faces = 0}, part.phase(0.0, 0.7, "collapse"));
+    const SurfaceDistance distance = measure(simplifier, tried, part.phase(0.7, 1.0, "measure"));
     const double error = distance.symmetric.max;
     if (error <= bound && (!best || tried.mesh.positions.size() < best->mesh.positions.size())) {
       best = std::move(tried);

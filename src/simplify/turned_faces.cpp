@@ -55,18 +55,33 @@ std::optional<Flip> flip_at(const TriangleMesh& mesh, const EdgeUses& edges, Ind
   return Flip{f, g, {c, d, b}, {d, c, a}};
 }
 
-// The least cosine between a new face and the other one or a face outside across an edge.
+// The least cosine between a new face and the other one or a face outside across an edge; -1 when a face would lie
+// folded on all its neighbours, a new one or one outside.
 double worst_fold(const TriangleMesh& mesh, const EdgeUses& edges, const Flip& flip) {
-  double worst = 1.0;
-  const Vec3 normals[2] = {normal_of(mesh.positions, flip.new_f), normal_of(mesh.positions, flip.new_g)};
-  if (normals[0].isZero() || normals[1].isZero()) return -1.0;
-  worst = normals[0].dot(normals[1]);
-  for (std::size_t i = 0; i < 2; ++i) {
-    const Triangle& t = i == 0 ? flip.new_f : flip.new_g;
-    for (std::size_t k = 1; k < 3; ++k) {  // edge 0 is the new one
+  const std::array<Triangle, 2> faces = {flip.new_f, flip.new_g};
+  const std::array<Vec3, 2> normal = {normal_of(mesh.positions, faces[0]), normal_of(mesh.positions, faces[1])};
+  const auto best_outside = [&](const Vec3& n, const Triangle& t, Index self) {
+    double best = -1.0;
+    for (std::size_t k = 0; k < 3; ++k) {
       for (const EdgeUse& use : edges.faces_at(t[k], t[(k + 1) % 3])) {
+        if (use.face == flip.f || use.face == flip.g || use.face == self) continue;
+        best = std::max(best, n.dot(normal_of(mesh.positions, mesh.triangles[use.face])));
+      }
+    }
+    return best;
+  };
+  const double between = normal[0].dot(normal[1]);
+  double worst = between;
+  for (std::size_t i = 0; i < 2; ++i) {
+    if (normal[i].isZero() || std::max(between, best_outside(normal[i], faces[i], kNoIndex)) <= kFolded) return -1.0;
+    for (std::size_t k = 1; k < 3; ++k) {  // edge 0 is the new one
+      for (const EdgeUse& use : edges.faces_at(faces[i][k], faces[i][(k + 1) % 3])) {
         if (use.face == flip.f || use.face == flip.g) continue;
-        worst = std::min(worst, normals[i].dot(normal_of(mesh.positions, mesh.triangles[use.face])));
+        const Triangle& outside = mesh.triangles[use.face];
+        const Vec3 n = normal_of(mesh.positions, outside);
+        const double cosine = n.dot(normal[i]);
+        if (std::max(cosine, best_outside(n, outside, use.face)) <= kFolded) return -1.0;
+        worst = std::min(worst, cosine);
       }
     }
   }
@@ -112,7 +127,7 @@ std::size_t unfold_faces(const TriangleMesh& reference, SimplifiedMesh& result, 
     std::vector<std::uint8_t> touched(mesh.positions.size(), 0);  // edges there are out of date until the next pass
     for (const Index f : turned) {
       std::optional<Flip> best;
-      double best_fold = kFolded;
+      double best_fold = -1.0;
       for (std::size_t k = 0; k < 3; ++k) {
         if (is_fixed(mesh.triangles[f][k]) && is_fixed(mesh.triangles[f][(k + 1) % 3])) continue;
         const std::optional<Flip> flip = flip_at(mesh, edges, f, k);
