@@ -142,6 +142,13 @@ struct TriangleTree::Impl {
   [[nodiscard]] Vec3 to_local(const Vec3& p) const { return (p - center) * scale; }
   [[nodiscard]] Hit closest(const Vec3& query, Index hint) const;
   void search(const Vec3& query, Best& best) const;
+  void prefetch(std::uint32_t child) const {
+    if (child & BoxNode::kItem) {
+      __builtin_prefetch(&corners[child & ~BoxNode::kItem]);
+    } else {
+      __builtin_prefetch(&tree.nodes[child]);
+    }
+  }
 };
 
 TriangleTree::Impl::Impl(const TriangleMesh& mesh, const RunContext& context) {
@@ -223,9 +230,11 @@ void TriangleTree::Impl::search(const Vec3& query, Best& best) const {
       const std::size_t first = count;
       for (std::size_t k = 0; k < BoxNode::kWidth; ++k) {
         if (!(distance_sq[k] <= best.bound)) continue;
+        const std::uint32_t child = node.child[k];
+        prefetch(child);
         std::size_t at = count++;
         for (; at > first && open[at - 1].distance_sq < distance_sq[k]; --at) open[at] = open[at - 1];
-        open[at] = {distance_sq[k], node.child[k]};  // the nearest on top
+        open[at] = {distance_sq[k], child};  // the nearest on top
       }
     }
     do {
