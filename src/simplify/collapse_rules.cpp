@@ -90,14 +90,15 @@ OptimalRule::Merger OptimalRule::merge(Index u, Index v) const {
   const float error = std::max(at_middle + sum.rise(y), 0.0f);
   if (!(error + tie < end.error)) return end;
   const Vec3f p = pu + half + y;
-  return y.dot(d) > 0.0f ? Merger{u, v, p, error} : Merger{v, u, p, error};
+  // The one of greater weight lives on, else the nearer one.
+  const bool keep_v = !weight_.empty() && weight_[u] != weight_[v] ? weight_[v] > weight_[u] : y.dot(d) > 0.0f;
+  return keep_v ? Merger{u, v, p, error} : Merger{v, u, p, error};
 }
 
 bool OptimalRule::is_legal(Index u, Index v, bool slivers) const {
   const Merger m = merge(u, v);
   return mesh_.keeps_topology(m.removed, m.kept) && mesh_.keeps_faces(m.removed, m.kept, m.position, slivers) &&
-         (m.position == mesh_.point(m.kept).position() ||
-          mesh_.keeps_faces(m.kept, m.removed, m.position, slivers));
+         (m.position == mesh_.point(m.kept).position() || mesh_.keeps_faces(m.kept, m.removed, m.position, slivers));
 }
 
 InputRule::Outcome OptimalRule::collapse(Index u, Index v) {

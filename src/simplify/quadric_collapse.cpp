@@ -21,7 +21,11 @@ class CollapseLoop {
  public:
   CollapseLoop(CollapseMesh& mesh, std::span<const float> removal_weight, const SimplifyTarget& target,
                std::size_t fixed_copies, const RunContext& context)
-      : mesh_(mesh), rule_(mesh, removal_weight), target_(target), fixed_copies_(fixed_copies), context_(context),
+      : mesh_(mesh),
+        rule_(mesh, removal_weight),
+        target_(target),
+        fixed_copies_(fixed_copies),
+        context_(context),
         num_before_(count()) {}
 
   /// Vertices or faces, whichever the target counts.
