@@ -38,9 +38,9 @@ def timed(work):
 
 def shapelight_metrics(tool, reference, test, *options):
     start = children_cpu()
-    text = subprocess.run([tool, "metrics", reference, test, "--json", "-", "--threads", "1", "-q", *options], check=True,
-                          capture_output=True, text=True).stdout
-    return json.loads(text)["result"], children_cpu() - start
+    done = subprocess.run([tool, "metrics", reference, test, "--json", "-", "--threads", "1", "-q", *options],
+                          check=True, capture_output=True, text=True)
+    return json.loads(done.stdout)["result"], children_cpu() - start
 
 
 def agree_with_metro(tool, folder, scratch):
@@ -100,7 +100,7 @@ def agree_with_meshlab(tool, path, scratch, rng):
         open3d_time += timed(lambda: open3d_closest(meshes.mesh(target), points))[1]
     for name in DIRECTIONS:
         theirs = meshlab_distances(meshes, name)
-        cells = [f"{ours[name][key]:.5g} ({ours[name][key] / theirs[key] - 1:+.2%})" for key in ("mean", "rms", "max")]
+        cells = [f"{ours[name][key]:.5g} ({ours[name][key] / theirs[key] - 1:+.2%})" for key in theirs]
         print(f"| {path.stem}, {name} | {' | '.join(cells)} | |")
     print(f"| {path.stem}, CPU s | shapelight {our_time:.2f} | MeshLab {their_time:.2f} ({their_time / our_time:.1f} x) | "
           f"Open3D {open3d_time:.2f} ({open3d_time / our_time:.1f} x) | {SAMPLES} samples |")
