@@ -1,0 +1,103 @@
+#include "simplify/collapse_loop.hpp"
+
+namespace shapelight::simplify {
+namespace {
+
+// Share of its trace added to a matrix before it is solved about the edge's midpoint.
+constexpr float kDamping = 1e-4f;
+
+// Placement::Optimal: u and v go where the sum of their quadrics is least. An edge belongs to the one of its ends that
+// became what it is later; the sum of two quadrics only grows, so that the other end's older keys are lower bounds.
+class OptimalRule : public CollapseRule {
+ public:
+  using CollapseRule::CollapseRule;
+  [[nodiscard]] float cost(Index u, Index v) const;
+  [[nodiscard]] bool is_legal(Index u, Index v, bool slivers) const;
+  Outcome collapse(Index u, Index v);
+
+ private:
+  struct Merger {
+    Index removed, kept;
+    Vec3f position;
+    float error;
+  };
+  [[nodiscard]] Merger merge(Index u, Index v) const;
+  [[nodiscard]] bool is_allowed(Index u, Index v) const;
+  std::uint32_t clock_ = 0;
+};
+
+bool OptimalRule::is_allowed(Index u, Index v) const {
+  const auto& a = mesh_.vertex(u);
+  const auto& b = mesh_.vertex(v);
+  constexpr auto kEither = CollapseMesh::kLocked | CollapseMesh::kLine;
+  if (!(a.flags & kEither) || !(b.flags & kEither)) return true;
+  if (a.is(CollapseMesh::kLocked) && b.is(CollapseMesh::kLocked)) return false;
+  return mesh_.is_next_on_line(a.is(CollapseMesh::kLocked) ? v : u, a.is(CollapseMesh::kLocked) ? u : v);
+}
+
+float OptimalRule::cost(Index u, Index v) const {
+  const std::uint32_t stamp_u = mesh_.vertex(u).stamp, stamp_v = mesh_.vertex(v).stamp;
+  if (stamp_u < stamp_v || (stamp_u == stamp_v && u < v) || !is_allowed(u, v)) return kNever;
+  const float trace = mesh_.vertex(u).quadric.trace() + mesh_.vertex(v).quadric.trace();
+  const float length_sq = (mesh_.point(v).position() - mesh_.point(u).position()).squaredNorm();
+  const float error = merge(u, v).error + kLengthPenalty * trace * length_sq;
+  return weight_.empty() ? error : weighted(error, std::max(weight_[u], weight_[v]));
+}
+
+OptimalRule::Merger OptimalRule::merge(Index u, Index v) const {
+  const auto& a = mesh_.vertex(u);
+  const auto& b = mesh_.vertex(v);
+  const Vec3f pu = mesh_.point(u).position(), pv = mesh_.point(v).position();
+  const float constant = mesh_.point(u).error + mesh_.point(v).error;
+  const Vec3f d = pv - pu;
+  const Merger into_v{u, v, pv, constant + std::max(a.quadric.rise(d), 0.0f)};
+  const Merger into_u{v, u, pu, constant + std::max(b.quadric.rise(-d), 0.0f)};
+  const auto rank = [](const CollapseMesh::Vertex& w) {
+    return w.is(CollapseMesh::kLocked) ? 2 : w.is(CollapseMesh::kLine) ? 1 : 0;
+  };
+  if (rank(a) != rank(b)) return rank(a) < rank(b) ? into_v : into_u;
+
+  // Where the minimum hardly beats an end, or is not unique, the end is better: an input position is exact.
+  const Merger& end = into_u.error < into_v.error ? into_u : into_v;
+  const float tie = kLengthPenalty * (a.quadric.trace() + b.quadric.trace()) * d.squaredNorm();
+  if (end.error <= tie) return end;
+  const Vec3f half = 0.5f * d;
+  Quadric sum = a.quadric.about(half);
+  sum += b.quadric.about(-half);
+  const Vec3f y = sum.minimum(kDamping * sum.trace());
+  const float at_middle = constant + a.quadric.rise(half) + b.quadric.rise(-half);
+  const float error = std::max(at_middle + sum.rise(y), 0.0f);
+  if (!(error + tie < end.error)) return end;
+  const Vec3f p = pu + half + y;
+  // The one of greater weight lives on, else the nearer one.
+  const bool keep_v = !weight_.empty() && weight_[u] != weight_[v] ? weight_[v] > weight_[u] : y.dot(d) > 0.0f;
+  return keep_v ? Merger{u, v, p, error} : Merger{v, u, p, error};
+}
+
+bool OptimalRule::is_legal(Index u, Index v, bool slivers) const {
+  const Merger m = merge(u, v);
+  return mesh_.keeps_topology(m.removed, m.kept) && mesh_.keeps_faces(m.removed, m.kept, m.position, slivers) &&
+         (m.position == mesh_.point(m.kept).position() || mesh_.keeps_faces(m.kept, m.removed, m.position, slivers));
+}
+
+CollapseRule::Outcome OptimalRule::collapse(Index u, Index v) {
+  const Merger m = merge(u, v);
+  auto& kept = mesh_.vertex(m.kept);
+  auto& at = mesh_.point(m.kept);
+  kept.quadric = kept.quadric.about(m.position - at.position());
+  kept.quadric += mesh_.vertex(m.removed).quadric.about(m.position - mesh_.point(m.removed).position());
+  if (m.position != at.position()) kept.set(CollapseMesh::kMoved);
+  at = {m.position.x(), m.position.y(), m.position.z(), m.error};
+  kept.stamp = ++clock_;
+  if (!weight_.empty()) weight_[m.kept] = std::max(weight_[m.kept], weight_[m.removed]);
+  return {mesh_.collapse(m.removed, m.kept), m.kept, false};
+}
+
+}  // namespace
+
+ManifoldMesh collapse_into_optimum(ManifoldMesh&& mesh, const SimplifyTarget& target, const QuadricCollapse& options,
+                                   const RunContext& context) {
+  return run_collapse<OptimalRule>(std::move(mesh), target, options, context);
+}
+
+}  // namespace shapelight::simplify
