@@ -116,6 +116,7 @@ class CollapseLoop {
       if (vertex.key == kParked) return;
       if (!queue_.is_due(vertex.key)) return push(u);
     }
+    for (const Index v : mesh_.ring(u)) mesh_.prefetch_vertex(v);
     if (rule_.is_legal(u, vertex.target, slivers_) || choose_legal(u)) collapse(u, vertex.target);
   }
 
