@@ -48,7 +48,7 @@ class Simplifier {
     if (target.vertices > vertices()) throw unreachable("vertices", target.vertices, vertices());
     if (target.faces > faces()) throw unreachable("faces", target.faces, faces());
     SimplifiedMesh result = simplified(method, target, context.phase(0.0, 0.95, "collapse"));
-    (void)unfold_faces(surface_.mesh, result, features_, context);
+    (void)unfold_faces(surface_.mesh, result, options_.ssim.placement, features_, context);
     check_result(reference_, result, target, options_.ssim.placement, context.phase(0.95, 1.0, "check"));
     return result;
   }
@@ -276,7 +276,7 @@ SimplifyOptions simplify_preset(SimplifyPreset preset, Placement placement) {
       break;
     case SimplifyPreset::Best:
       options.ssim.pre_collapse = optimal ? 2.0 : 4.0;
-      options.ssim.sweeps = 4;
+      options.ssim.sweeps = 8;
       break;
     case SimplifyPreset::Detail:
       break;

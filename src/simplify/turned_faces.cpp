@@ -88,6 +88,42 @@ double worst_fold(const TriangleMesh& mesh, const EdgeUses& edges, const Flip& f
   return worst;
 }
 
+template <class IsFixed>
+std::optional<Flip> best_flip(const TriangleMesh& mesh, const EdgeUses& edges, Index face, IsFixed&& is_fixed) {
+  std::optional<Flip> best;
+  double best_fold = -1.0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (is_fixed(mesh.triangles[face][k]) && is_fixed(mesh.triangles[face][(k + 1) % 3])) continue;
+    const std::optional<Flip> flip = flip_at(mesh, edges, face, k);
+    if (!flip) continue;
+    const double fold = worst_fold(mesh, edges, *flip);
+    if (fold <= best_fold) continue;
+    best_fold = fold;
+    best = flip;
+  }
+  return best;
+}
+
+// A vertex of three faces allows no flip. It is moved to the middle of the triangle that its neighbours make, if the
+// face's vertex v is one.
+void pull_into_ring(TriangleMesh& mesh, const EdgeUses& edges, Index face, Index v) {
+  const Triangle& t = mesh.triangles[face];
+  const std::size_t k = static_cast<std::size_t>(std::find(t.begin(), t.end(), v) - t.begin());
+  const Index a = t[(k + 1) % 3], b = t[(k + 2) % 3];
+  // The third vertex of the face beyond the edge from v to w.
+  const auto beyond = [&](Index w) {
+    const std::span<const EdgeUse> sides = edges.faces_at(v, w);
+    if (sides.size() != 2) return kNoIndex;
+    for (const Index x : mesh.triangles[sides[0].face == face ? sides[1].face : sides[0].face]) {
+      if (x != v && x != w) return x;
+    }
+    return kNoIndex;
+  };
+  const Index c = beyond(a);
+  if (c == kNoIndex || c != beyond(b) || edges.faces_at(v, c).size() != 2) return;
+  mesh.positions[v] = (mesh.positions[a] + mesh.positions[b] + mesh.positions[c]) / 3.0;
+}
+
 }  // namespace
 
 std::vector<Index> turned_faces(const TriangleMesh& reference, const TriangleMesh& mesh, const EdgeUses& edges,
@@ -114,8 +150,8 @@ std::vector<Index> turned_faces(const TriangleMesh& reference, const TriangleMes
   return turned;
 }
 
-std::size_t unfold_faces(const TriangleMesh& reference, SimplifiedMesh& result, const FeatureEdges& features,
-                         const RunContext& context) {
+std::size_t unfold_faces(const TriangleMesh& reference, SimplifiedMesh& result, Placement placement,
+                         const FeatureEdges& features, const RunContext& context) {
   std::vector<std::uint8_t> is_feature(features.empty() ? 0 : reference.positions.size(), 0);
   for (const auto& [a, b] : features) is_feature[a] = is_feature[b] = 1;
   const auto is_fixed = [&](Index v) { return !is_feature.empty() && is_feature[result.source_vertex[v]] != 0; };
@@ -126,23 +162,18 @@ std::size_t unfold_faces(const TriangleMesh& reference, SimplifiedMesh& result, 
     if (turned.empty() || pass == kMaxPasses) return turned.size();
     std::vector<std::uint8_t> touched(mesh.positions.size(), 0);  // edges there are out of date until the next pass
     for (const Index f : turned) {
-      std::optional<Flip> best;
-      double best_fold = -1.0;
-      for (std::size_t k = 0; k < 3; ++k) {
-        if (is_fixed(mesh.triangles[f][k]) && is_fixed(mesh.triangles[f][(k + 1) % 3])) continue;
-        const std::optional<Flip> flip = flip_at(mesh, edges, f, k);
-        if (!flip) continue;
-        const double fold = worst_fold(mesh, edges, *flip);
-        if (fold <= best_fold) continue;
-        best_fold = fold;
-        best = flip;
+      const Triangle corners = mesh.triangles[f];
+      if (const std::optional<Flip> flip = best_flip(mesh, edges, f, is_fixed)) {
+        const std::array<Index, 4> quad = {flip->new_f[0], flip->new_f[1], flip->new_f[2], flip->new_g[2]};
+        if (std::any_of(quad.begin(), quad.end(), [&](Index v) { return touched[v] != 0; })) continue;
+        for (const Index v : quad) touched[v] = 1;
+        mesh.triangles[flip->f] = flip->new_f;
+        mesh.triangles[flip->g] = flip->new_g;
+      } else if (placement == Placement::Optimal) {
+        for (const Index v : corners) {
+          if (!is_fixed(v)) pull_into_ring(mesh, edges, f, v);
+        }
       }
-      if (!best) continue;
-      const std::array<Index, 4> corners = {best->new_f[0], best->new_f[1], best->new_f[2], best->new_g[2]};
-      if (std::any_of(corners.begin(), corners.end(), [&](Index v) { return touched[v] != 0; })) continue;
-      for (const Index v : corners) touched[v] = 1;
-      mesh.triangles[best->f] = best->new_f;
-      mesh.triangles[best->g] = best->new_g;
     }
   }
 }

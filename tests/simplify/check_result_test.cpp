@@ -163,19 +163,32 @@ TEST(TurnedFaces, OneFlipUnfoldsThem) {
   SimplifiedMesh result = reference;
   result.mesh.positions[4] = Vec3(1.2, 0.5, 0.0);
   expect_broken(broken(reference, result, {}, Placement::Optimal), "is turned over");
-  EXPECT_EQ(unfold_faces(reference.mesh, result, {}, {}), 0u);
+  EXPECT_EQ(unfold_faces(reference.mesh, result, Placement::Input, {}, {}), 0u);
   EXPECT_EQ(broken(reference, result, {}, Placement::Optimal), "");
   // A feature along that edge forbids the flip.
   SimplifiedMesh held = reference;
   held.mesh.positions[4] = Vec3(1.2, 0.5, 0.0);
-  EXPECT_EQ(unfold_faces(reference.mesh, held, {{0, 1}, {1, 2}, {1, 4}, {2, 4}}, {}), 1u);
+  EXPECT_EQ(unfold_faces(reference.mesh, held, Placement::Input, {{0, 1}, {1, 2}, {1, 4}, {2, 4}}, {}), 1u);
   EXPECT_EQ(held.mesh.triangles, reference.mesh.triangles);
+}
+
+TEST(TurnedFaces, AVertexOfThreeFacesMovesInPlaceOfAFlip) {
+  // Vertex 3 of three faces lies outside of its ring 0 1 2, far beyond edge 1-2 and the face there.
+  const TriangleMesh input{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.3, 0.3, 0}, {0.6, 0.6, 0}},
+                           {{0, 1, 3}, {1, 2, 3}, {2, 0, 3}, {1, 4, 2}}};
+  const SimplifiedMesh reference = identity(input);
+  SimplifiedMesh result = reference;
+  result.mesh.positions[3] = Vec3(1.5, 1.5, 0.0);
+  expect_broken(broken(reference, result, {}, Placement::Optimal), "is turned over");
+  EXPECT_EQ(unfold_faces(reference.mesh, result, Placement::Optimal, {}, {}), 0u);
+  EXPECT_EQ(result.mesh.triangles, reference.mesh.triangles);
+  EXPECT_EQ(result.mesh.positions[3], Vec3(1.0 / 3.0, 1.0 / 3.0, 0.0));
 }
 
 TEST(TurnedFaces, NothingChangesWhereNothingIsTurned) {
   const SimplifiedMesh whole = identity(mesh_of(sphere(3, 1.0, 0.2)));
   SimplifiedMesh same = whole;
-  EXPECT_EQ(unfold_faces(whole.mesh, same, {}, {}), 0u);
+  EXPECT_EQ(unfold_faces(whole.mesh, same, Placement::Input, {}, {}), 0u);
   EXPECT_EQ(same.mesh.triangles, whole.mesh.triangles);
 }
 
