@@ -36,35 +36,36 @@ def markdown_table(head, rows):
     return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows]) + "\n"
 
 
-def ratio_rows(rows, names, base, figure):
-    """Per method: geometric mean of the ratio to `base` per share removed, over all, and the worst cell."""
-    by_cell = {(r["mesh"], r["removed"], r["method"]): r for r in rows if "rms" in r}
-    for name in names:
-        ratios = {}
-        for (mesh, removed, method), row in by_cell.items():
-            reference = by_cell.get((mesh, removed, base))
-            if method == name and reference:
-                ratios[mesh, removed] = row[figure] / reference[figure]
-        if not ratios or name == base:
-            continue
-        means = [[v for (_, r), v in ratios.items() if r == removed] for removed in REMOVED]
-        worst = max(ratios, key=ratios.get)
-        yield [name, *(f"{cells.geometric_mean(v):.2f}" if v else "-" for v in means),
-               f"{cells.geometric_mean(list(ratios.values())):.2f}",
-               f"{ratios[worst]:.2f} ({worst[0]} {100 * worst[1]:g} %)",
-               f"{sum(v < 1 for v in ratios.values())} of {len(ratios)}"]
+def ratios_to(rows, base, method, figure):
+    """{(mesh, share removed): ratio of `method` to `base`}"""
+    by_cell = {(r["mesh"], r["removed"], r["method"]): r[figure] for r in rows if "rms" in r}
+    return {(mesh, removed): value / by_cell[mesh, removed, base] for (mesh, removed, name), value in by_cell.items()
+            if name == method and (mesh, removed, base) in by_cell}
+
+
+def number(value):
+    return f"{value:.2f}" if value < 100 else f"{value:.0f}"
+
+
+def ratio_row(rows, base, method):
+    """Geometric means of every figure, and of the RMS distance the worst cell and how many cells are below 1."""
+    texts = []
+    for figure in FIGURES:
+        values = [[v for (_, r), v in ratios_to(rows, base, method, figure).items() if r == removed] for removed in REMOVED]
+        texts.append(" / ".join(number(cells.geometric_mean(v)) if v else "-" for v in values))
+    distances = ratios_to(rows, base, method, "rms")
+    worst = max(distances, key=distances.get)
+    return [method, *texts, f"{number(distances[worst])} ({worst[0]} {100 * worst[1]:g} %)",
+            f"{sum(v < 1 for v in distances.values())} of {len(distances)}"]
 
 
 def summary(rows, names):
-    head = ["method", *(f"{100 * r:g} %" for r in REMOVED), "all", "worst cell", "below 1"]
-    parts = []
+    shares = " / ".join(f"{100 * removed:g}" for removed in REMOVED)
+    head = ["method", "RMS", "largest", "normals", "CPU", "worst RMS", "RMS below 1"]
     for base in BASES:
-        for figure, (title, _) in FIGURES.items():
-            table = list(ratio_rows(rows, names, base, figure))
-            if table:
-                parts.append(f"{title.split(',')[0]}, ratio to {base}, geometric mean by share removed:\n\n"
-                             + markdown_table(head, table))
-    return parts
+        table = [ratio_row(rows, base, name) for name in names if name != base and ratios_to(rows, base, name, "rms")]
+        if table:
+            yield f"Ratio to {base}, geometric mean at {shares} % removed:\n\n" + markdown_table(head, table)
 
 
 def cell_text(row, figure):
