@@ -48,6 +48,12 @@ class TargetUnreachable : public Error {
   std::uint64_t reachable_;
 };
 
+/// A result does not hold what is promised of it, so it is withheld; the message names the promise (exit code 6).
+class PostconditionFailed : public Error {
+ public:
+  explicit PostconditionFailed(const std::string& what) : Error(6, what) {}
+};
+
 /// The memory budget would be exceeded; thrown before work starts (exit code 7).
 class BudgetExceeded : public Error {
  public:

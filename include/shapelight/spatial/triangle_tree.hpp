@@ -10,7 +10,9 @@
 
 namespace shapelight {
 
-/// Closest points on a triangle mesh: a tree of bounding boxes over its triangles.
+/// Closest points on a triangle mesh, exact to the rounding of doubles at any offset: a tree of single precision boxes,
+/// four to a node (Wald, Benthin and Boulos 2008), that bound from below, and triangles in double precision.
+/// Cost: O(n log n) time to build, about 120 bytes per triangle; O(log n) per query near the surface.
 class TriangleTree {
  public:
   struct Hit {
@@ -20,7 +22,8 @@ class TriangleTree {
   };
 
   TriangleTree();
-  /// Keeps a copy of what it needs. Throws InvalidInput (index out of range, non-finite corner, no triangle).
+  /// Keeps a copy of what it needs. Throws InvalidInput (index out of range, non-finite corner, no triangle),
+  /// Cancelled.
   explicit TriangleTree(const TriangleMesh& mesh, const RunContext& context = {});
   ~TriangleTree();
   TriangleTree(TriangleTree&&) noexcept;
@@ -28,9 +31,10 @@ class TriangleTree {
 
   [[nodiscard]] std::size_t size() const;
   /// The closest triangle; of equally close ones the smallest index. `hint`: a triangle thought to be near (or
-  /// kNoIndex); it speeds the search up and never changes the distance. Safe to call from many threads.
+  /// kNoIndex); it speeds the search up and never changes the result. A query that is not finite gets kNoIndex and a
+  /// distance of NaN. Safe to call from many threads. Throws InvalidInput when no mesh was given.
   [[nodiscard]] Hit closest(const Vec3& query, Index hint = kNoIndex) const;
-  /// closest() of many points, in parallel.
+  /// closest() of many points, in parallel; fastest when points that follow each other are close.
   [[nodiscard]] std::vector<Hit> closest(std::span<const Vec3> queries, const RunContext& context = {}) const;
 
  private:

@@ -1,0 +1,251 @@
+#include "simplify/check_result.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+#include <optional>
+
+#include "shapelight/core/error.hpp"
+#include "shapelight/spatial/triangle_tree.hpp"
+#include "simplify/manifold_mesh.hpp"
+
+namespace shapelight {
+namespace {
+
+constexpr double kFolded = -0.9;    // cosine between the normals of faces that lie on each other
+constexpr double kAgainst = -0.5;   // cosine from which a face looks against the input
+constexpr double kNoArea = 1e-9;    // twice the area over the longest edge squared: no normal to speak of
+
+struct EdgeUse {
+  Index high;  // the other vertex; edges are listed at their lower one
+  Index face;
+  friend auto operator<=>(const EdgeUse&, const EdgeUse&) = default;
+};
+
+// The edges of all faces by their lower vertex, sorted there: equal edges stand together.
+struct EdgeUses {
+  std::vector<std::size_t> offsets;
+  std::vector<EdgeUse> uses;
+
+  explicit EdgeUses(const TriangleMesh& mesh) : offsets(mesh.positions.size() + 1, 0), uses(3 * mesh.triangles.size()) {
+    const auto for_edges = [&](auto&& visit) {
+      for (Index f = 0; f < mesh.triangles.size(); ++f) {
+        for (std::size_t c = 0; c < 3; ++c) {
+          const auto [low, high] = std::minmax(mesh.triangles[f][c], mesh.triangles[f][(c + 1) % 3]);
+          visit(low, EdgeUse{high, f});
+        }
+      }
+    };
+    for_edges([&](Index low, const EdgeUse&) { ++offsets[low + 1]; });
+    std::partial_sum(offsets.begin(), offsets.end(), offsets.begin());
+    std::vector<std::size_t> next(offsets.begin(), offsets.end() - 1);
+    for_edges([&](Index low, const EdgeUse& use) { uses[next[low]++] = use; });
+    for (std::size_t v = 0; v + 1 < offsets.size(); ++v) std::sort(begin_of(v), begin_of(v + 1));
+  }
+
+  // visit(low, high, faces of the edge as a span of uses), once per edge
+  template <class Visit>
+  void for_each(Visit&& visit) const {
+    for (Index low = 0; low + 1 < offsets.size(); ++low) {
+      for (std::size_t i = offsets[low]; i < offsets[low + 1];) {
+        std::size_t end = i + 1;
+        while (end < offsets[low + 1] && uses[end].high == uses[i].high) ++end;
+        visit(low, uses[i].high, std::span(uses).subspan(i, end - i));
+        i = end;
+      }
+    }
+  }
+
+ private:
+  std::vector<EdgeUse>::iterator begin_of(std::size_t v) {
+    return uses.begin() + static_cast<std::ptrdiff_t>(offsets[v]);
+  }
+};
+
+// What collapses must not change.
+struct Topology {
+  std::ptrdiff_t euler = 0;  // vertices - edges + faces
+  std::size_t borders = 0;   // connected lines of edges with one face
+};
+
+Topology topology_of(const TriangleMesh& mesh, const EdgeUses& edges) {
+  Topology topology;
+  topology.euler = static_cast<std::ptrdiff_t>(mesh.positions.size() + mesh.triangles.size());
+  std::vector<Index> parent(mesh.positions.size());
+  std::iota(parent.begin(), parent.end(), Index{0});
+  const auto root = [&](Index v) {
+    while (parent[v] != v) v = parent[v] = parent[parent[v]];
+    return v;
+  };
+  std::vector<std::uint8_t> on_border(mesh.positions.size(), 0);
+  edges.for_each([&](Index low, Index high, std::span<const EdgeUse> faces) {
+    --topology.euler;
+    if (faces.size() != 1) return;
+    on_border[low] = on_border[high] = 1;
+    parent[root(low)] = root(high);
+  });
+  for (Index v = 0; v < parent.size(); ++v) topology.borders += on_border[v] != 0 && parent[v] == v;
+  return topology;
+}
+
+void check_count(const SimplifiedMesh& result, const SimplifyTarget& target) {
+  const std::size_t vertices = result.mesh.positions.size(), faces = result.mesh.triangles.size();
+  if (target.vertices != 0 && vertices != target.vertices) {
+    throw PostconditionFailed(fmt::format("simplified to {} vertices, expected {}", vertices, target.vertices));
+  }
+  if (target.faces != 0 && (faces > target.faces + 1 || faces + 1 < target.faces)) {
+    throw PostconditionFailed(fmt::format("simplified to {} faces, expected {} within one", faces, target.faces));
+  }
+}
+
+void check_vertices(const SimplifiedMesh& reference, const SimplifiedMesh& result, Placement placement) {
+  const std::size_t n = result.mesh.positions.size();
+  if (result.source_vertex.size() != n) {
+    throw PostconditionFailed(fmt::format("{} sources for {} vertices", result.source_vertex.size(), n));
+  }
+  std::vector<std::uint8_t> used(n, 0);
+  for (std::size_t f = 0; f < result.mesh.triangles.size(); ++f) {
+    const Triangle& t = result.mesh.triangles[f];
+    if (std::max({t[0], t[1], t[2]}) >= n) throw PostconditionFailed(fmt::format("face {}: vertex >= {}", f, n));
+    if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) {
+      throw PostconditionFailed(fmt::format("face {}: vertices {} {} {}, expected three", f, t[0], t[1], t[2]));
+    }
+    for (const Index v : t) used[v] = 1;
+  }
+  Index highest = 0;
+  for (const Index s : reference.source_vertex) highest = std::max(highest, s);
+  std::vector<Index> vertex_of(std::size_t{highest} + 1, kNoIndex);
+  for (Index v = 0; v < reference.source_vertex.size(); ++v) vertex_of[reference.source_vertex[v]] = v;
+  for (std::size_t v = 0; v < n; ++v) {
+    const Index source = result.source_vertex[v];
+    if (used[v] == 0) throw PostconditionFailed(fmt::format("vertex {} is in no face", v));
+    if (!result.mesh.positions[v].allFinite()) throw PostconditionFailed(fmt::format("vertex {} is not finite", v));
+    if (source > highest || vertex_of[source] == kNoIndex) {
+      throw PostconditionFailed(fmt::format("vertex {}: source {} is in no face of the input", v, source));
+    }
+    if (placement == Placement::Input && result.mesh.positions[v] != reference.mesh.positions[vertex_of[source]]) {
+      throw PostconditionFailed(fmt::format("vertex {} is not where its source {} is", v, source));
+    }
+  }
+}
+
+void check_duplicate_faces(const TriangleMesh& mesh) {
+  // Equal faces share their lowest vertex; few faces have the same one.
+  std::vector<std::size_t> offsets(mesh.positions.size() + 1, 0);
+  for (const Triangle& t : mesh.triangles) ++offsets[std::min({t[0], t[1], t[2]}) + 1];
+  std::partial_sum(offsets.begin(), offsets.end(), offsets.begin());
+  std::vector<std::size_t> next(offsets.begin(), offsets.end() - 1);
+  std::vector<Triangle> sorted(mesh.triangles.size());
+  for (Triangle t : mesh.triangles) {
+    std::sort(t.begin(), t.end());
+    sorted[next[t[0]]++] = t;
+  }
+  for (std::size_t v = 0; v + 1 < offsets.size(); ++v) {
+    const auto begin = sorted.begin() + static_cast<std::ptrdiff_t>(offsets[v]);
+    const auto end = sorted.begin() + static_cast<std::ptrdiff_t>(offsets[v + 1]);
+    std::sort(begin, end);
+    const auto twice = std::adjacent_find(begin, end);
+    if (twice != end) {
+      throw PostconditionFailed(
+          fmt::format("two faces over vertices {} {} {}", (*twice)[0], (*twice)[1], (*twice)[2]));
+    }
+  }
+}
+
+// Pairs of input vertices whose edges have more than two faces, sorted.
+std::vector<std::array<Index, 2>> crowded_edges(const SimplifiedMesh& mesh, const EdgeUses& edges) {
+  std::vector<std::array<Index, 2>> crowded;
+  edges.for_each([&](Index low, Index high, std::span<const EdgeUse> faces) {
+    if (faces.size() <= 2) return;
+    const auto [a, b] = std::minmax(mesh.source_vertex[low], mesh.source_vertex[high]);
+    crowded.push_back({a, b});
+  });
+  std::sort(crowded.begin(), crowded.end());
+  return crowded;
+}
+
+void check_edges(const SimplifiedMesh& reference, const SimplifiedMesh& result, const EdgeUses& edges_in,
+                 const EdgeUses& edges_out) {
+  const auto before = crowded_edges(reference, edges_in);
+  for (const auto& edge : crowded_edges(result, edges_out)) {
+    if (!std::binary_search(before.begin(), before.end(), edge)) {
+      throw PostconditionFailed(
+          fmt::format("more than two faces at the edge from input vertex {} to {}, where the input has none or two",
+                      edge[0], edge[1]));
+    }
+  }
+  const Topology in = topology_of(reference.mesh, edges_in), out = topology_of(result.mesh, edges_out);
+  if (out.euler != in.euler) {
+    throw PostconditionFailed(fmt::format("Euler characteristic {}, expected the input's {}", out.euler, in.euler));
+  }
+  if (out.borders > in.borders) {
+    throw PostconditionFailed(fmt::format("{} borders, expected at most the input's {}", out.borders, in.borders));
+  }
+}
+
+// Zero where the face has no area to speak of.
+Vec3 unit_normal(const TriangleMesh& mesh, std::size_t face) {
+  const auto& [a, b, c] = mesh.triangles[face];
+  const Vec3 u = mesh.positions[b] - mesh.positions[a], v = mesh.positions[c] - mesh.positions[a];
+  const Vec3 cross = u.cross(v);
+  const double length = cross.norm();
+  const double longest_sq = std::max({u.squaredNorm(), v.squaredNorm(), (u - v).squaredNorm()});
+  return length > kNoArea * longest_sq ? Vec3(cross / length) : Vec3::Zero();
+}
+
+// Whether the face looks against the input at all of its places that are tried.
+bool looks_against(const TriangleMesh& mesh, std::size_t face, const TriangleMesh& reference, const TriangleTree& tree) {
+  const auto& [a, b, c] = mesh.triangles[face];
+  const Vec3 normal = unit_normal(mesh, face);
+  const Vec3 center = (mesh.positions[a] + mesh.positions[b] + mesh.positions[c]) / 3.0;
+  for (const Vec3& place : {center, Vec3(0.5 * (center + mesh.positions[a])), Vec3(0.5 * (center + mesh.positions[b])),
+                            Vec3(0.5 * (center + mesh.positions[c]))}) {
+    if (unit_normal(reference, tree.closest(place).triangle).dot(normal) > kAgainst) return false;
+  }
+  return true;
+}
+
+void check_orientation(const TriangleMesh& reference, const TriangleMesh& mesh, const EdgeUses& edges,
+                       const RunContext& context) {
+  std::vector<Vec3> normal(mesh.triangles.size());
+  for (std::size_t f = 0; f < normal.size(); ++f) normal[f] = unit_normal(mesh, f);
+  std::vector<std::uint8_t> has_neighbor(mesh.triangles.size(), 0), supported(mesh.triangles.size(), 0);
+  edges.for_each([&](Index, Index, std::span<const EdgeUse> faces) {
+    for (const EdgeUse& f : faces) {
+      for (const EdgeUse& g : faces) {
+        if (f.face == g.face) continue;
+        has_neighbor[f.face] = 1;
+        supported[f.face] |= normal[f.face].dot(normal[g.face]) > kFolded;
+      }
+    }
+  });
+  std::optional<TriangleTree> tree;  // rarely needed
+  for (std::size_t f = 0; f < normal.size(); ++f) {
+    if (has_neighbor[f] == 0 || supported[f] != 0) continue;
+    if (!tree) tree.emplace(reference, context);
+    if (looks_against(mesh, f, reference, *tree)) {
+      throw PostconditionFailed(fmt::format("face {} is turned over: it looks against its neighbours and the input", f));
+    }
+  }
+}
+
+}  // namespace
+
+SimplifiedMesh without_oddities(const TriangleMesh& mesh, MeshOddities& oddities, const RunContext& context) {
+  return simplify::merge_copies(simplify::make_manifold(mesh, {}, context, &oddities));
+}
+
+void check_result(const SimplifiedMesh& reference, const SimplifiedMesh& result, const SimplifyTarget& target,
+                  Placement placement, const RunContext& context) {
+  check_count(result, target);
+  check_vertices(reference, result, placement);
+  context.check();
+  check_duplicate_faces(result.mesh);
+  const EdgeUses edges_in(reference.mesh), edges_out(result.mesh);
+  context.check();
+  check_edges(reference, result, edges_in, edges_out);
+  check_orientation(reference.mesh, result.mesh, edges_out, context);
+}
+
+}  // namespace shapelight
