@@ -9,12 +9,15 @@ DEPTH_JUMP = 4.0  # a triangle of a scan with a side of more than so many median
 
 
 def read_off(path):
-    """(points, triangles) of an OFF file of triangles."""
-    words = np.array(Path(path).read_text().split()[1:], dtype=np.float64)
-    num_points, num_triangles = int(words[0]), int(words[1])
-    points = words[3:3 + 3 * num_points].reshape(-1, 3)
-    rows = words[3 + 3 * num_points:3 + 3 * num_points + 4 * num_triangles].reshape(-1, 4)
-    return points, rows[:, 1:].astype(np.int64)
+    """(points, triangles) of an OFF file of triangles; further columns, such as colours, are left out."""
+    with open(path) as file:
+        file.readline()
+        num_points, num_triangles = map(int, file.readline().split()[:2])
+        points = np.loadtxt(file, max_rows=num_points, usecols=(0, 1, 2), ndmin=2)
+        triangles = np.loadtxt(file, max_rows=num_triangles, usecols=(1, 2, 3), dtype=np.int64, ndmin=2)
+    if triangles.min(initial=0) < 0 or triangles.max(initial=0) >= num_points:
+        raise ValueError(f"{path}: a corner beyond the vertices")
+    return points, triangles
 
 
 def write_off(path, points, triangles):

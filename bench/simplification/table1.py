@@ -11,6 +11,7 @@ from pathlib import Path
 
 import cells
 import methods
+import numpy as np
 from cells import FIGURES
 
 REMOVED = (0.50, 0.90, 0.95)
@@ -18,6 +19,7 @@ BASES = ("QSlim", "CGAL Lindstrom-Turk")
 MESHES = ("bunny", "falcon", "nefertiti", "horse", "lucy", "scorpion", "armadillo", "dragon_res2", "turbine_blade",
           "fandisk")  # in the place of: tubby, bird, buddha, duck, angel, lobster, frog (three and four), valve
 SCANS = ("bun000", "dragonStandRight_0")
+PLOTTED = (0.1, 10)  # ratios beyond are drawn at the edge
 TUNED = ("fandisk", "bunny", "armadillo")  # looked at when constants of SSim were set
 
 
@@ -116,7 +118,7 @@ def plot(rows, names, path):
     figure, panels = plt.subplots(1, len(shown), sharey=True, figsize=(13, 0.42 * len(names) + 1.4))
     for panel, name in zip(panels, shown):
         for color, removed in zip(("#8fbce6", "#3977b5", "#12385c"), REMOVED):
-            points = [(row[name] / by_cell[mesh, share, "QSlim"][name], names.index(method))
+            points = [(np.clip(row[name] / by_cell[mesh, share, "QSlim"][name], *PLOTTED), names.index(method))
                       for (mesh, share, method), row in by_cell.items()
                       if share == removed and method in names and (mesh, share, "QSlim") in by_cell]
             shift = 0.25 * (REMOVED.index(removed) - 1)
@@ -124,6 +126,7 @@ def plot(rows, names, path):
                           label=f"{100 * removed:g} % removed")
         panel.axvline(1, color="#888888", linewidth=0.8)
         panel.set_xscale("log")
+        panel.set_xlim(*PLOTTED)
         panel.set_title(FIGURES[name][0].split(",")[0] + ", ratio to QSlim", fontsize=10)
         panel.grid(axis="y", alpha=0.25)
     panels[0].set_yticks(range(len(names)), names)
