@@ -1,9 +1,9 @@
 // Measures how far two triangle meshes are apart, with no code of shapelight's, in double precision.
 //   mesh_judge REFERENCE.off TEST.off [SAMPLES_PER_VERTEX = 10]
 // On each surface SAMPLES_PER_VERTEX x (vertices of REFERENCE) points, one in each of as many stretches of equal area
-// along the triangles; closest points on the other surface are exact. Prints JSON: root mean square of the distances, of
-// the angles between the triangles' normals, and the largest distance, over samples and vertices; distances as shares
-// of REFERENCE's bounding box diagonal.
+// along the triangles; closest points on the other surface are exact. Prints JSON: root mean square of the distances,
+// of the angles between the triangles' normals, and the largest distance, over samples and vertices; distances as
+// shares of REFERENCE's bounding box diagonal.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -49,7 +49,8 @@ double triangle_distance_sq(const Point& p, const Corners& t) {
   if (n_sq > 0 && dot(n, cross(t.b - t.a, ap)) >= 0 && dot(n, cross(t.c - t.b, p - t.b)) >= 0 &&
       dot(n, cross(t.a - t.c, p - t.c)) >= 0)
     return dot(n, ap) * dot(n, ap) / n_sq;
-  return std::min({segment_distance_sq(p, t.a, t.b), segment_distance_sq(p, t.b, t.c), segment_distance_sq(p, t.c, t.a)});
+  return std::min(
+      {segment_distance_sq(p, t.a, t.b), segment_distance_sq(p, t.b, t.c), segment_distance_sq(p, t.c, t.a)});
 }
 
 struct Box {

@@ -45,8 +45,7 @@ rivals::OffMesh to_off(const Mesh& mesh) {
   for (const auto face : mesh.faces()) {
     rivals::Triangle triangle{};
     std::size_t corner = 0;
-    for (auto it = mesh.cfv_iter(face); it.is_valid(); ++it)
-      triangle[corner++] = static_cast<std::uint32_t>(it->idx());
+    for (auto it = mesh.cfv_iter(face); it.is_valid(); ++it) triangle[corner++] = static_cast<std::uint32_t>(it->idx());
     result.triangles.push_back(triangle);
   }
   return result;

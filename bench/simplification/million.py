@@ -50,7 +50,7 @@ def run(command):
     pid = os.spawnvp(os.P_NOWAIT, str(command[0]), [str(word) for word in command])
     _, status, usage = os.wait4(pid, 0)
     if status != 0:
-        raise SystemExit(f"{command[0]}: failed")
+        raise methods.Failed(f"{Path(command[0]).name}: exit code {os.waitstatus_to_exitcode(status)}")
     return {"wall": time.monotonic() - start, "process_cpu": usage.ru_utime + usage.ru_stime,
             "peak_bytes": usage.ru_maxrss * 1024}
 
@@ -85,8 +85,12 @@ def main():
         print(row, file=sys.stderr, flush=True)
 
     for method in arguments.methods:
-        one, first = run_shapelight(arguments, method, mesh, wanted, 1)
-        two, second = run_shapelight(arguments, method, mesh, wanted, 2)
+        try:
+            one, first = run_shapelight(arguments, method, mesh, wanted, 1)
+            two, second = run_shapelight(arguments, method, mesh, wanted, 2)
+        except methods.Failed as error:
+            print(f"{method}: {error}", file=sys.stderr)
+            continue
         same = first.read_bytes() == second.read_bytes()
         for row, result in ((one, first), (two, second)):
             add({**row, "speedup": one["simplify_wall"] / row["simplify_wall"], "same_bytes": same}, result)
