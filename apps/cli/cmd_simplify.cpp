@@ -69,6 +69,7 @@ Outcome simplify_within_reach(const Geometry& geometry, const SimplifySize& size
 nlohmann::ordered_json result_json(const SimplifyResult& result, const SimplifyOptions& options,
                                    const SimplifySize& size) {
   nlohmann::ordered_json json = {{"vertices_in", result.vertices_in},
+                                 {"surface_vertices", result.surface_vertices},
                                  {"faces_in", result.faces_in},
                                  {"vertices", result.geometry.size()},
                                  {"faces", result.geometry.triangles.size()},

@@ -13,6 +13,7 @@
 #include "shapelight/pipeline/sample.hpp"
 #include "shapelight/simplify/qslim.hpp"
 #include "simplify/check_result.hpp"
+#include "simplify/turned_faces.hpp"
 
 namespace shapelight {
 namespace {
@@ -47,6 +48,7 @@ class Simplifier {
     if (target.vertices > vertices()) throw unreachable("vertices", target.vertices, vertices());
     if (target.faces > faces()) throw unreachable("faces", target.faces, faces());
     SimplifiedMesh result = simplified(method, target, context.phase(0.0, 0.95, "collapse"));
+    (void)unfold_faces(surface_.mesh, result, features_, context);
     check_result(reference_, result, target, options_.ssim.placement, context.phase(0.95, 1.0, "check"));
     return result;
   }
@@ -88,11 +90,10 @@ std::size_t num_finite(const Geometry& geometry) {
                                                 [](const Vec3& p) { return p.allFinite(); }));
 }
 
-SimplifyTarget target_of(const SimplifySize& size, const Geometry& geometry, const Simplifier& simplifier,
-                         SimplifyResult& result) {
+SimplifyTarget target_of(const SimplifySize& size, const Simplifier& simplifier, SimplifyResult& result) {
   if (size.vertices) return {.vertices = *size.vertices, .faces = 0};
   if (size.faces) return {.vertices = 0, .faces = *size.faces};
-  const std::size_t asked = share_of(*size.ratio, num_finite(geometry));
+  const std::size_t asked = share_of(*size.ratio, result.vertices_in);
   if (asked > simplifier.vertices()) {
     result.warnings.push_back(
         fmt::format("the ratio asks for {} vertices, the surface has {}: all are kept", asked, simplifier.vertices()));
@@ -116,8 +117,10 @@ SimplifiedMesh search_by_error(const Simplifier& simplifier, double bound, Simpl
   const std::size_t first = std::max(search.least, share_of(kFirstGuess, simplifier.vertices()));
   search.guess = first;
   try {  // quadrics are cheap and tell the order of magnitude
-    const SimplifiedMesh rough = simplifier.run(SimplifyMethod::Qslim, {.vertices = first, .faces = 0}, slot(0));
-    const double error = measure(simplifier, rough, slot(0)).symmetric.max;
+    const RunContext part = slot(0);
+    const SimplifiedMesh rough = simplifier.run(SimplifyMethod::Qslim, {.vertices = first, .faces = 0},
+                                                part.phase(0.0, 0.7, "collapse"));
+    const double error = measure(simplifier, rough, part.phase(0.7, 1.0, "measure")).symmetric.max;
     search.guess = static_cast<std::size_t>(static_cast<double>(first) * std::clamp(error / bound, 0.01, 10.0));
   } catch (const TargetUnreachable&) {
     // The search finds out itself how far this goes.
@@ -126,8 +129,9 @@ SimplifiedMesh search_by_error(const Simplifier& simplifier, double bound, Simpl
   std::size_t tries = 0;
   const pipeline::FoundCount found = pipeline::find_count(bound, search, [&](std::size_t count) {
     ++tries;
-    SimplifiedMesh tried = simplifier.run({.vertices = count, .faces = 0}, slot(tries));
-    const SurfaceDistance distance = measure(simplifier, tried, slot(tries));
+    const RunContext part = slot(tries);
+    SimplifiedMesh tried = simplifier.run({.vertices = count, .faces = 0}, part.phase(0.0, 0.7, "collapse"));
+    const SurfaceDistance distance = measure(simplifier, tried, part.phase(0.7, 1.0, "measure"));
     const double error = distance.symmetric.max;
     if (error <= bound && (!best || tried.mesh.positions.size() < best->mesh.positions.size())) {
       best = std::move(tried);
@@ -157,7 +161,7 @@ Geometry assemble(const Geometry& input, const Surface& surface, const Simplifie
   return output;
 }
 
-void warn_of_oddities(const Simplifier& simplifier, SimplifyResult& result) {
+void warn_of_oddities(const Simplifier& simplifier, std::size_t non_finite, SimplifyResult& result) {
   const auto note = [&](std::size_t count, std::string_view what) {
     if (count > 0) result.warnings.push_back(fmt::format("{} {}", count, what));
   };
@@ -168,7 +172,8 @@ void warn_of_oddities(const Simplifier& simplifier, SimplifyResult& result) {
   note(odd.reoriented_faces, "faces turned over to agree with their neighbours");
   note(odd.split_vertices, "vertices doubled where sheets only touch");
   note(odd.locked_vertices, "vertices kept where sheets meet and cannot be told apart");
-  note(odd.unused_vertices, "vertices in no face: left out");
+  note(non_finite, "vertices without a finite position: left out");
+  note(odd.unused_vertices - non_finite, "vertices in no face: left out");
 }
 
 void warn_of_noise(const SimplifyOptions& options, const std::optional<ShapeGuide>& guide, SimplifyResult& result) {
@@ -186,15 +191,16 @@ SimplifyResult simplify_surface(const Geometry& geometry, const SimplifySize& si
                                 const RunContext& context) {
   const Simplifier simplifier(geometry, options, context.phase(0.0, 0.3, "prepare"));
   SimplifyResult result;
-  result.vertices_in = simplifier.vertices();
+  result.vertices_in = num_finite(geometry);
+  result.surface_vertices = simplifier.vertices();
   result.faces_in = simplifier.faces();
   result.oddities = simplifier.oddities();
-  warn_of_oddities(simplifier, result);
+  warn_of_oddities(simplifier, geometry.size() - result.vertices_in, result);
   warn_of_noise(options, simplifier.guide(), result);
   const RunContext work = context.phase(0.3, 0.9, "collapse");
   SimplifiedMesh simplified = size.max_error
                                   ? search_by_error(simplifier, *size.max_error, result, work)
-                                  : simplifier.run(target_of(size, geometry, simplifier, result), work);
+                                  : simplifier.run(target_of(size, simplifier, result), work);
   if (options.measure && !result.measured) {
     result.measured = measure(simplifier, simplified, context.phase(0.9, 0.95, "measure"));
   }
@@ -230,7 +236,7 @@ SimplifyResult sample_cloud(const Geometry& geometry, const SimplifySize& size, 
   result.geometry = select_points(geometry, sampled.indices);
   result.source_vertex = std::move(sampled.indices);
   result.sampled = true;
-  result.vertices_in = geometry.size();
+  result.vertices_in = sampled.usable;
   result.noise = sampled.noise;
   result.warnings.emplace_back("the input is a point cloud without faces: its points were sampled, and no mesh was made");
   return result;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <tuple>
 
@@ -126,29 +127,22 @@ std::vector<Place> places_on(const TriangleTree& tree, const TriangleMesh& surfa
   return places;
 }
 
-// Faces joined across edges on which their texture coordinates agree get the same number.
-class Charts {
- public:
-  Charts(const Geometry& geometry, const Surface& surface);
-
-  [[nodiscard]] Index chart_of(Index face) const { return chart_[face]; }
-  [[nodiscard]] const FeatureEdges& seams() const { return seams_; }
-
- private:
-  Index root(Index face) {
-    while (chart_[face] != face) face = chart_[face] = chart_[chart_[face]];
-    return face;
-  }
-
-  std::vector<Index> chart_;
-  FeatureEdges seams_;
-};
-
 Index input_triangle(const Surface& surface, Index face) {
   return surface.triangle_of.empty() ? face : surface.triangle_of[face];
 }
 
-Charts::Charts(const Geometry& geometry, const Surface& surface) {
+// The picture's own neighbourhood: faces across edges on which their texture coordinates agree.
+struct Atlas {
+  std::vector<std::array<Index, 3>> neighbors;  // per face; kNoIndex at seams and borders
+  FeatureEdges seams;
+
+  Atlas(const Geometry& geometry, const Surface& surface);
+
+ private:
+  void connect(Index face, Index neighbor) { *std::find(neighbors[face].begin(), neighbors[face].end(), kNoIndex) = neighbor; }
+};
+
+Atlas::Atlas(const Geometry& geometry, const Surface& surface) {
   struct Side {
     Index low, high, face;
     TexCoord at_low, at_high;
@@ -156,9 +150,8 @@ Charts::Charts(const Geometry& geometry, const Surface& surface) {
   const std::vector<Triangle>& triangles = surface.mesh.triangles;
   std::vector<Side> sides;
   sides.reserve(3 * triangles.size());
-  chart_.resize(triangles.size());
+  neighbors.assign(triangles.size(), {kNoIndex, kNoIndex, kNoIndex});
   for (Index f = 0; f < triangles.size(); ++f) {
-    chart_[f] = f;
     const TexCoord* uv = &geometry.corner_texcoords[3 * std::size_t{input_triangle(surface, f)}];
     for (std::size_t c = 0; c < 3; ++c) {
       const std::size_t d = (c + 1) % 3;
@@ -169,16 +162,17 @@ Charts::Charts(const Geometry& geometry, const Surface& surface) {
   std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
     return std::tie(a.low, a.high, a.face) < std::tie(b.low, b.high, b.face);
   });
-  for (std::size_t i = 1; i < sides.size(); ++i) {
-    const Side &a = sides[i - 1], &b = sides[i];
-    if (a.low != b.low || a.high != b.high) continue;
-    if (a.at_low == b.at_low && a.at_high == b.at_high) {
-      chart_[root(a.face)] = root(b.face);
-    } else {
-      seams_.push_back({a.low, a.high});
+  for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
+    while (end < sides.size() && sides[end].low == sides[begin].low && sides[end].high == sides[begin].high) ++end;
+    if (end - begin != 2) continue;
+    const Side &a = sides[begin], &b = sides[begin + 1];
+    if (a.at_low != b.at_low || a.at_high != b.at_high) {
+      seams.push_back({a.low, a.high});
+    } else if (a.face != b.face) {
+      connect(a.face, b.face);
+      connect(b.face, a.face);
     }
   }
-  for (Index f = 0; f < chart_.size(); ++f) chart_[f] = root(f);
 }
 
 TexCoord texcoord_at(const Geometry& input, const Surface& surface, Index face, const Vec3& query) {
@@ -197,32 +191,62 @@ TexCoord texcoord_at(const Geometry& input, const Surface& surface, Index face, 
   return result;
 }
 
-double shortest_edge(const TriangleMesh& mesh, Index face) {
-  const auto [a, b, c] = corners_of(mesh, face);
-  return std::sqrt(std::min({(a - b).squaredNorm(), (b - c).squaredNorm(), (c - a).squaredNorm()}));
-}
+// Walks over the atlas from one face to the one that is closest to a point. So it never crosses a seam, and where both
+// sides of a seam meet the point it ends on the side that it came from.
+class AtlasWalk {
+ public:
+  AtlasWalk(const Atlas& atlas, const TriangleMesh& mesh) : atlas_(atlas), mesh_(mesh) {}
 
-// All three corners lie in the chart under the face's centre: a corner steps towards it until it is there.
+  // Ends when a face is as close as `least_sq`, or when all ways on lead farther off than the start is.
+  Index walk(Index from, const Vec3& target, double least_sq) {
+    constexpr std::size_t kMaxFaces = 256;
+    met_.assign(1, from);
+    open_.assign(1, {distance_sq(from, target), from});
+    Step best = open_.front();
+    const double farthest = best.first;
+    while (!open_.empty() && best.first > least_sq && met_.size() < kMaxFaces) {
+      std::pop_heap(open_.begin(), open_.end(), std::greater<>());
+      const Index face = open_.back().second;
+      open_.pop_back();
+      for (const Index next : atlas_.neighbors[face]) {
+        if (next == kNoIndex || std::find(met_.begin(), met_.end(), next) != met_.end()) continue;
+        met_.push_back(next);
+        const Step step(distance_sq(next, target), next);
+        if (step.first > farthest) continue;
+        open_.push_back(step);
+        best = std::min(best, step);
+        std::push_heap(open_.begin(), open_.end(), std::greater<>());
+      }
+    }
+    return best.second;
+  }
+
+ private:
+  using Step = std::pair<double, Index>;
+
+  [[nodiscard]] double distance_sq(Index face, const Vec3& target) const {
+    const auto [a, b, c] = corners_of(mesh_, face);
+    return (closest_point_on_triangle(target, a, b, c) - target).squaredNorm();
+  }
+
+  const Atlas& atlas_;
+  const TriangleMesh& mesh_;
+  std::vector<Index> met_;
+  std::vector<Step> open_;  // a heap, closest first
+};
+
 std::vector<TexCoord> transfer_texcoords(const Geometry& input, const Surface& surface, const TriangleTree& tree,
                                          const TriangleMesh& output, const RunContext& context) {
-  const Charts charts(input, surface);
+  const Atlas atlas(input, surface);
   std::vector<TexCoord> result(3 * output.triangles.size());
   parallel::for_chunks(context, output.triangles.size(), [&](std::size_t begin, std::size_t end) {
+    AtlasWalk walk(atlas, surface.mesh);
     for (std::size_t f = begin; f < end; ++f) {
       const std::array<Vec3, 3> corner = corners_of(output, f);
-      const Vec3 center = (corner[0] + corner[1] + corner[2]) / 3.0;
-      const Index below = tree.closest(center).triangle;
+      const Index below = tree.closest((corner[0] + corner[1] + corner[2]) / 3.0).triangle;
       for (std::size_t c = 0; c < 3; ++c) {
-        const Vec3 inwards = center - corner[c];
-        const double length = inwards.norm();
-        const double limit = 0.5 * shortest_edge(surface.mesh, tree.closest(corner[c], below).triangle);
-        Index face = below;
-        for (double share = length > 0.0 ? std::min(0.05, limit / length) : 1.0; share < 1.0; share *= 3.0) {
-          const Index met = tree.closest(corner[c] + share * inwards, below).triangle;
-          if (charts.chart_of(met) != charts.chart_of(below)) continue;
-          face = met;
-          break;
-        }
+        const TriangleTree::Hit hit = tree.closest(corner[c], below);
+        const Index face = atlas.seams.empty() ? hit.triangle : walk.walk(below, corner[c], hit.distance_sq);
         result[3 * f + c] = texcoord_at(input, surface, face, corner[c]);
       }
     }
@@ -234,7 +258,7 @@ std::vector<TexCoord> transfer_texcoords(const Geometry& input, const Surface& s
 
 FeatureEdges texture_seams(const Geometry& geometry, const Surface& surface) {
   if (geometry.corner_texcoords.empty()) return {};
-  return Charts(geometry, surface).seams();
+  return Atlas(geometry, surface).seams;
 }
 
 void transfer_attributes(const Geometry& input, const Surface& surface, const SimplifiedMesh& simplified,

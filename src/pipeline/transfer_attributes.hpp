@@ -15,8 +15,8 @@ namespace shapelight::pipeline {
 /// - Vertices, Placement::Input: those of the source vertex. Optimal: interpolated at the closest point of the surface:
 ///   numbers linearly, integers rounded, normals made unit, labels (by name, and 64-bit integers) from the nearest corner.
 /// - Triangles: those of the input triangle closest to the centroid.
-/// - Texture coordinates: of the input face under a point that is stepped from the corner a little into the output face,
-///   so that both sides of a seam keep their own; taken at the closest point to the corner.
+/// - Texture coordinates: of the input face closest to the corner among those that are reached from below the output
+///   face's centroid without crossing a seam, so that both sides of a seam keep their own.
 void transfer_attributes(const Geometry& input, const Surface& surface, const SimplifiedMesh& simplified,
                          Placement placement, Geometry& output, const RunContext& context);
 

@@ -4,64 +4,14 @@
 
 #include <algorithm>
 #include <numeric>
-#include <optional>
 
 #include "shapelight/core/error.hpp"
-#include "shapelight/spatial/triangle_tree.hpp"
+#include "simplify/edge_uses.hpp"
 #include "simplify/manifold_mesh.hpp"
+#include "simplify/turned_faces.hpp"
 
 namespace shapelight {
 namespace {
-
-constexpr double kFolded = -0.9;    // cosine between the normals of faces that lie on each other
-constexpr double kAgainst = -0.5;   // cosine from which a face looks against the input
-constexpr double kNoArea = 1e-9;    // twice the area over the longest edge squared: no normal to speak of
-
-struct EdgeUse {
-  Index high;  // the other vertex; edges are listed at their lower one
-  Index face;
-  friend auto operator<=>(const EdgeUse&, const EdgeUse&) = default;
-};
-
-// The edges of all faces by their lower vertex, sorted there: equal edges stand together.
-struct EdgeUses {
-  std::vector<std::size_t> offsets;
-  std::vector<EdgeUse> uses;
-
-  explicit EdgeUses(const TriangleMesh& mesh) : offsets(mesh.positions.size() + 1, 0), uses(3 * mesh.triangles.size()) {
-    const auto for_edges = [&](auto&& visit) {
-      for (Index f = 0; f < mesh.triangles.size(); ++f) {
-        for (std::size_t c = 0; c < 3; ++c) {
-          const auto [low, high] = std::minmax(mesh.triangles[f][c], mesh.triangles[f][(c + 1) % 3]);
-          visit(low, EdgeUse{high, f});
-        }
-      }
-    };
-    for_edges([&](Index low, const EdgeUse&) { ++offsets[low + 1]; });
-    std::partial_sum(offsets.begin(), offsets.end(), offsets.begin());
-    std::vector<std::size_t> next(offsets.begin(), offsets.end() - 1);
-    for_edges([&](Index low, const EdgeUse& use) { uses[next[low]++] = use; });
-    for (std::size_t v = 0; v + 1 < offsets.size(); ++v) std::sort(begin_of(v), begin_of(v + 1));
-  }
-
-  // visit(low, high, faces of the edge as a span of uses), once per edge
-  template <class Visit>
-  void for_each(Visit&& visit) const {
-    for (Index low = 0; low + 1 < offsets.size(); ++low) {
-      for (std::size_t i = offsets[low]; i < offsets[low + 1];) {
-        std::size_t end = i + 1;
-        while (end < offsets[low + 1] && uses[end].high == uses[i].high) ++end;
-        visit(low, uses[i].high, std::span(uses).subspan(i, end - i));
-        i = end;
-      }
-    }
-  }
-
- private:
-  std::vector<EdgeUse>::iterator begin_of(std::size_t v) {
-    return uses.begin() + static_cast<std::ptrdiff_t>(offsets[v]);
-  }
-};
 
 // What collapses must not change.
 struct Topology {
@@ -184,52 +134,6 @@ void check_edges(const SimplifiedMesh& reference, const SimplifiedMesh& result, 
   }
 }
 
-// Zero where the face has no area to speak of.
-Vec3 unit_normal(const TriangleMesh& mesh, std::size_t face) {
-  const auto& [a, b, c] = mesh.triangles[face];
-  const Vec3 u = mesh.positions[b] - mesh.positions[a], v = mesh.positions[c] - mesh.positions[a];
-  const Vec3 cross = u.cross(v);
-  const double length = cross.norm();
-  const double longest_sq = std::max({u.squaredNorm(), v.squaredNorm(), (u - v).squaredNorm()});
-  return length > kNoArea * longest_sq ? Vec3(cross / length) : Vec3::Zero();
-}
-
-// Whether the face looks against the input at all of its places that are tried.
-bool looks_against(const TriangleMesh& mesh, std::size_t face, const TriangleMesh& reference, const TriangleTree& tree) {
-  const auto& [a, b, c] = mesh.triangles[face];
-  const Vec3 normal = unit_normal(mesh, face);
-  const Vec3 center = (mesh.positions[a] + mesh.positions[b] + mesh.positions[c]) / 3.0;
-  for (const Vec3& place : {center, Vec3(0.5 * (center + mesh.positions[a])), Vec3(0.5 * (center + mesh.positions[b])),
-                            Vec3(0.5 * (center + mesh.positions[c]))}) {
-    if (unit_normal(reference, tree.closest(place).triangle).dot(normal) > kAgainst) return false;
-  }
-  return true;
-}
-
-void check_orientation(const TriangleMesh& reference, const TriangleMesh& mesh, const EdgeUses& edges,
-                       const RunContext& context) {
-  std::vector<Vec3> normal(mesh.triangles.size());
-  for (std::size_t f = 0; f < normal.size(); ++f) normal[f] = unit_normal(mesh, f);
-  std::vector<std::uint8_t> has_neighbor(mesh.triangles.size(), 0), supported(mesh.triangles.size(), 0);
-  edges.for_each([&](Index, Index, std::span<const EdgeUse> faces) {
-    for (const EdgeUse& f : faces) {
-      for (const EdgeUse& g : faces) {
-        if (f.face == g.face) continue;
-        has_neighbor[f.face] = 1;
-        supported[f.face] |= normal[f.face].dot(normal[g.face]) > kFolded;
-      }
-    }
-  });
-  std::optional<TriangleTree> tree;  // rarely needed
-  for (std::size_t f = 0; f < normal.size(); ++f) {
-    if (has_neighbor[f] == 0 || supported[f] != 0) continue;
-    if (!tree) tree.emplace(reference, context);
-    if (looks_against(mesh, f, reference, *tree)) {
-      throw PostconditionFailed(fmt::format("face {} is turned over: it looks against its neighbours and the input", f));
-    }
-  }
-}
-
 }  // namespace
 
 SimplifiedMesh without_oddities(const TriangleMesh& mesh, MeshOddities& oddities, const RunContext& context) {
@@ -245,7 +149,11 @@ void check_result(const SimplifiedMesh& reference, const SimplifiedMesh& result,
   const EdgeUses edges_in(reference.mesh), edges_out(result.mesh);
   context.check();
   check_edges(reference, result, edges_in, edges_out);
-  check_orientation(reference.mesh, result.mesh, edges_out, context);
+  const std::vector<Index> turned = turned_faces(reference.mesh, result.mesh, edges_out, context);
+  if (!turned.empty()) {
+    throw PostconditionFailed(
+        fmt::format("face {} is turned over: it looks against its neighbours and the input", turned.front()));
+  }
 }
 
 }  // namespace shapelight

@@ -37,7 +37,7 @@ class CollapseMesh {
     Index target;                ///< into this neighbour
     std::uint16_t flags = 0;
     std::uint16_t unused;
-    std::uint32_t stamp;         ///< when the vertex became what it is
+    std::uint32_t stamp;  ///< when the vertex became what it is
     [[nodiscard]] bool is(Flag flag) const { return (flags & flag) != 0; }
     void set(Flag flag, bool on = true) { flags = static_cast<std::uint16_t>(on ? flags | flag : flags & ~flag); }
     [[nodiscard]] bool is_dead() const { return size == 0; }

@@ -13,7 +13,9 @@ namespace shapelight::simplify {
 class StarTable {
  public:
   StarTable(std::size_t num_vertices, std::span<const Triangle> triangles);
-  [[nodiscard]] std::span<const Index> operator[](Index v) const { return {arena_.data() + slot_[v].begin, slot_[v].size}; }
+  [[nodiscard]] std::span<const Index> operator[](Index v) const {
+    return {arena_.data() + slot_[v].begin, slot_[v].size};
+  }
   void add(Index v, Index face);
   void remove(Index v, Index face);
   void clear(Index v) { slot_[v].size = 0; }
@@ -65,7 +67,8 @@ class LiveMesh {
   /// u becomes v. Pre: may_collapse(u, v). On a line, the edge (u, v) takes over what u's other line edge spanned.
   void collapse(Index u, Index v);
 
-  /// May the edge between these faces be exchanged for the other diagonal? `quad` gets {a, b, c, d}: f = (a, b, c), g = (b, a, d).
+  /// May the edge between these faces be exchanged for the other diagonal? `quad` gets {a, b, c, d}: f = (a, b, c), g =
+  /// (b, a, d).
   [[nodiscard]] bool may_flip(Index f, Index g, std::array<Index, 4>& quad) const;
   /// The faces become (c, d, b) and (d, c, a). Pre: may_flip().
   void flip(Index f, Index g, const std::array<Index, 4>& quad);

@@ -183,8 +183,7 @@ SimplifiedMesh merge_copies(ManifoldMesh&& mesh) {
     for (Index& v : t) v = representative[v];
   }
   // Two copies of one vertex may have become neighbours.
-  std::erase_if(mesh.mesh.triangles,
-                [](const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; });
+  std::erase_if(mesh.mesh.triangles, [](const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; });
   for (const Triangle& t : mesh.mesh.triangles) used[t[0]] = used[t[1]] = used[t[2]] = 1;
 
   std::vector<Index> order;

@@ -14,8 +14,8 @@ namespace shapelight::simplify {
 /// has one fan of faces, every vertex is used. Vertices on non-manifold input are copies, one per fan.
 struct ManifoldMesh {
   TriangleMesh mesh;
-  std::vector<Index> source;          ///< per vertex: input vertex
-  std::vector<std::uint8_t> locked;   ///< per vertex: may be neither removed nor moved (corner of lines, junction)
+  std::vector<Index> source;         ///< per vertex: input vertex
+  std::vector<std::uint8_t> locked;  ///< per vertex: may be neither removed nor moved (corner of lines, junction)
   /// Per vertex on a line (border or feature edges): its two neighbours along it; kNoIndex twice elsewhere. A vertex
   /// on a line collapses along it only. Line ends and junctions are locked.
   std::vector<std::array<Index, 2>> line;

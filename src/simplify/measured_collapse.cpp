@@ -10,10 +10,10 @@
 namespace shapelight::simplify {
 namespace {
 
-constexpr std::size_t kChunk = 64;     // vertices per chunk: an evaluation takes microseconds
-constexpr double kRoundShare = 0.25;   // of what is left to remove, per round
-constexpr double kGuardFactor = 1.5;   // backward error that a removal may cost, in units of its forward error
-constexpr ShapeLimits kLimits{.min_cosine = 0.2, .min_quality = 0.01};
+constexpr std::size_t kChunk = 64;    // vertices per chunk: an evaluation takes microseconds
+constexpr double kRoundShare = 0.25;  // of what is left to remove, per round
+constexpr double kGuardFactor = 1.5;  // backward error that a removal may cost, in units of its forward error
+constexpr ShapeLimits kLimits{.min_cosine = 0.2, .min_quality = 0.02};
 
 struct Removal {
   Index into = kNoIndex;
@@ -45,6 +45,10 @@ class RemovalTrial {
       if (t[0] == v || t[1] == v || t[2] == v) continue;
       const LocalTriangle after = triangle_with(mesh, f, u_, mesh.position[v], origin);
       if (!keeps_shape(triangle_with(mesh, f, u_, origin, origin), after, worst_, kLimits)) {
+        return std::numeric_limits<double>::infinity();
+      }
+      const auto source = [&](int k) { return mesh.source[t[k] == u_ ? v : t[k]]; };
+      if (!measured_.agrees_with_input(after.normal, source(0), source(1), source(2))) {
         return std::numeric_limits<double>::infinity();
       }
       scratch_.block.offer(after, static_cast<std::int32_t>(scratch_.kept.size()));

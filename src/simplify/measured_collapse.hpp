@@ -16,8 +16,8 @@ struct MeasuredCollapse {
 };
 
 /// Removes vertices, each into a neighbour, the ones whose removal raises the measured energy least first, until
-/// done() says so. Works in rounds over independent sets, so the order is nearly greedy, and the same for any number of threads.
-/// Returns false when no removal is possible before that.
+/// done() says so. Works in rounds over independent sets, so the order is nearly greedy, and the same for any number of
+/// threads. Returns false when no removal is possible before that.
 [[nodiscard]] bool collapse_measured(MeasuredMesh& measured, std::size_t num_to_remove, const MeasuredCollapse& options,
                                      const RunContext& context);
 

@@ -39,6 +39,11 @@ double gain_of(const MeasuredMesh& measured, Index f, Index g, Scratch& scratch)
   for (const LocalTriangle* after : {&new_f, &new_g}) {
     if (!keeps_shape(old_f, *after, worst, kLimits) || !keeps_shape(old_g, *after, worst, kLimits)) return 0.0;
   }
+  const auto agrees = [&](const LocalTriangle& t, int i, int j, int k) {
+    const auto& source = mesh.source;
+    return measured.agrees_with_input(t.normal, source[quad[i]], source[quad[j]], source[quad[k]]);
+  };
+  if (!agrees(new_f, 2, 3, 1) || !agrees(new_g, 3, 2, 0)) return 0.0;
   const Index faces[2] = {f, g};
   const double before = measured.gather(faces, origin, scratch.block, scratch.ids);
   scratch.block.reset();

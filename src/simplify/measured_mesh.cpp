@@ -9,7 +9,19 @@
 namespace shapelight::simplify {
 namespace {
 
-constexpr double kLineShare = 0.5;  // weight of a line sample per length, in units of the output's edge length
+constexpr double kLineShare = 0.15;    // weight of a line sample per length, in units of the output's edge length
+constexpr double kCreaseLength = 2.4;  // of the sum of three unit normals: less, and they stand across a crease
+constexpr double kMinAgreement = 0.5;  // cosine
+
+std::vector<Vec3> vertex_normals(std::span<const Vec3> position, std::span<const Triangle> triangles) {
+  std::vector<Vec3> normal(position.size(), Vec3::Zero());
+  for (const Triangle& t : triangles) {
+    const Vec3 cross = (position[t[1]] - position[t[0]]).cross(position[t[2]] - position[t[0]]);
+    for (const Index v : t) normal[v] += cross;
+  }
+  for (Vec3& n : normal) n.normalize();
+  return normal;
+}
 
 SurfaceSample sample_at(const Vec3& position, double weight) {
   SurfaceSample s;
@@ -19,10 +31,10 @@ SurfaceSample sample_at(const Vec3& position, double weight) {
   return s;
 }
 
-// Shares of the area: METHOD, part S. Centroids alone carry normals: those of vertices would blur creases.
-struct Shares {
-  double centroid, midpoint, vertex;
-};
+// Shares of the area (METHOD, part S). Centroids alone carry normals: those of vertices would blur creases. Midpoints
+// of edges add nothing that was measurable, at twice the samples.
+constexpr double kCentroidShare = 0.75;
+constexpr double kVertexShare = 0.25;
 
 struct SampledSurface {
   std::vector<SurfaceSample> samples;
@@ -30,10 +42,10 @@ struct SampledSurface {
 };
 
 SampledSurface sample_surface(std::span<const Vec3> position, std::span<const Triangle> triangles,
-                              const SampleScheme& scheme) {
-  const Shares share = scheme.midpoints ? Shares{0.60, 0.25, 0.15} : Shares{0.75, 0.0, 0.25};
+                              double normal_weight) {
   SampledSurface out;
-  out.samples.reserve(triangles.size() * (scheme.midpoints ? 3 : 1) + position.size());
+  out.samples.reserve(triangles.size() + position.size());
+  out.face.reserve(triangles.size() + position.size());
   std::vector<double> vertex_area(position.size(), 0.0);
   std::vector<Index> vertex_face(position.size(), kNoIndex);
   for (Index f = 0; f < triangles.size(); ++f) {
@@ -41,26 +53,20 @@ SampledSurface sample_surface(std::span<const Vec3> position, std::span<const Tr
     const Vec3 cross = (position[t[1]] - position[t[0]]).cross(position[t[2]] - position[t[0]]);
     const double double_area = cross.norm();
     const double area = 0.5 * double_area;
-    SurfaceSample s = sample_at((position[t[0]] + position[t[1]] + position[t[2]]) / 3.0, share.centroid * area);
+    SurfaceSample s = sample_at((position[t[0]] + position[t[1]] + position[t[2]]) / 3.0, kCentroidShare * area);
     if (double_area > 0.0) {
       for (int j = 0; j < 3; ++j) s.normal[j] = static_cast<float>(cross[j] / double_area);
-      s.turn = static_cast<float>(2.0 * scheme.normal_weight * scheme.normal_weight * s.weight);
+      s.turn = static_cast<float>(2.0 * normal_weight * normal_weight * s.weight);
     }
     out.samples.push_back(s);
     out.face.push_back(f);
-    for (int k = 0; k < 3; ++k) {
-      const Index a = t[k];
-      const Index b = t[(k + 1) % 3];
-      vertex_area[a] += area / 3.0;
-      vertex_face[a] = f;
-      if (!scheme.midpoints || a > b) continue;  // the face on the other side brings the midpoint where a > b
-      out.samples.push_back(sample_at(0.5 * (position[a] + position[b]), share.midpoint * area * 2.0 / 3.0));
-      out.face.push_back(f);
+    for (const Index v : t) {
+      vertex_area[v] += area / 3.0;
+      vertex_face[v] = f;
     }
   }
   for (Index v = 0; v < position.size(); ++v) {
-    if (vertex_face[v] == kNoIndex) continue;
-    out.samples.push_back(sample_at(position[v], share.vertex * vertex_area[v]));
+    out.samples.push_back(sample_at(position[v], kVertexShare * vertex_area[v]));
     out.samples.back().vertex = v;
     out.face.push_back(vertex_face[v]);
   }
@@ -115,7 +121,7 @@ double segment_distance_sq(const Vec3& p, const Vec3& a, const Vec3& b) {
 MeasuredMesh::MeasuredMesh(const ManifoldMesh& input, std::span<const Vec3> target, ManifoldMesh&& coarse,
                            const SampleScheme& scheme, const RunContext& context)
     : mesh(std::move(coarse)), changed(mesh.num_faces(), 1), first_sample_(mesh.num_faces(), kNoIndex) {
-  SampledSurface surface = sample_surface(target, input.mesh.triangles, scheme);
+  SampledSurface surface = sample_surface(target, input.mesh.triangles, scheme.normal_weight);
   samples_ = std::move(surface.samples);
   const bool is_whole = mesh.num_vertices() == input.mesh.positions.size();
   std::vector<Index> face = is_whole ? std::move(surface.face) : closest_faces(mesh, samples_, context);
@@ -136,6 +142,7 @@ MeasuredMesh::MeasuredMesh(const ManifoldMesh& input, std::span<const Vec3> targ
     }
   });
   sample_lines(input, target, scheme);
+  input_normal_ = vertex_normals(target, input.mesh.triangles);
 }
 
 void MeasuredMesh::sample_lines(const ManifoldMesh& input, std::span<const Vec3> target, const SampleScheme& scheme) {
@@ -246,11 +253,10 @@ void MeasuredMesh::merge_line(Index gone, Index kept) {
   }
 }
 
-double MeasuredMesh::energy() const {
-  double sum = 0.0;
-  for (const SurfaceSample& s : samples_) sum += s.error;
-  for (const LineSample& s : line_samples_) sum += s.error;
-  return sum;
+bool MeasuredMesh::agrees_with_input(const Vec3& normal, Index a, Index b, Index c) const {
+  const Vec3 sum = input_normal_[a] + input_normal_[b] + input_normal_[c];
+  const double length = sum.norm();
+  return length < kCreaseLength || normal.dot(sum) > kMinAgreement * length;
 }
 
 }  // namespace shapelight::simplify

@@ -13,10 +13,10 @@ namespace shapelight::simplify {
 /// A point of the input surface, attached to the face of the live mesh that stands for it. One cache line.
 struct SurfaceSample {
   Vec3 position;
-  float normal[3];      ///< unit normal of its input face; zero when it has no normal term
-  float weight = 0.0F;  ///< share of the area
-  float turn = 0.0F;    ///< weight of 1 - cos(angle of normals)
-  float error = 0.0F;   ///< at its face, weighted
+  float normal[3];          ///< unit normal of its input face; zero when it has no normal term
+  float weight = 0.0F;      ///< share of the area
+  float turn = 0.0F;        ///< weight of 1 - cos(angle of normals)
+  float error = 0.0F;       ///< at its face, weighted
   Index next = kNoIndex;    ///< next sample of the same face
   Index vertex = kNoIndex;  ///< the input vertex that it is, if it is one
 };
@@ -30,7 +30,6 @@ struct LineSample {
 };
 
 struct SampleScheme {
-  bool midpoints = false;        ///< edge midpoints too: six samples per vertex in place of three
   double normal_weight = 0.1;    ///< lambda
   double boundary_weight = 1.0;  ///< of line samples
 };
@@ -49,7 +48,8 @@ class MeasuredMesh {
 
   /// The samples of these faces relative to `origin`; returns their energy. `ids` gets their numbers.
   double gather(std::span<const Index> faces, const Vec3& origin, SampleBlock& block, std::vector<Index>& ids) const;
-  /// Gives the faces the samples that gather() found: faces[block.best[i]] gets ids[i]. Safe for disjoint faces at once.
+  /// Gives the faces the samples that gather() found: faces[block.best[i]] gets ids[i]. Safe for disjoint faces at
+  /// once.
   void assign(std::span<const Index> faces, const SampleBlock& block, std::span<const Index> ids);
 
   /// Calls visit(sample) for every sample of the face.
@@ -67,11 +67,14 @@ class MeasuredMesh {
   /// All samples of line edge `gone` go to `kept`, whose ends have changed.
   void merge_line(Index gone, Index kept);
 
-  [[nodiscard]] double energy() const;  ///< of all samples
+  /// Does a face whose corners come from input vertices a, b, c look the way the input does there? Always true where
+  /// the normals there disagree: across creases.
+  [[nodiscard]] bool agrees_with_input(const Vec3& normal, Index a, Index b, Index c) const;
 
  private:
   void sample_lines(const ManifoldMesh& input, std::span<const Vec3> target, const SampleScheme& scheme);
 
+  std::vector<Vec3> input_normal_;  ///< per input vertex
   std::vector<SurfaceSample> samples_;
   std::vector<Index> first_sample_;  ///< per face
   std::vector<LineSample> line_samples_;

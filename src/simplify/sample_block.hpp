@@ -14,10 +14,10 @@ struct LocalTriangle {
   LocalTriangle(const Vec3& a, const Vec3& b, const Vec3& c);
 
   Vec3 corner[3];
-  Vec3 normal;           ///< unit
-  Vec3 direction[3];     ///< unit, of edge k from corner k on
-  Vec3 outward[3];       ///< unit, in the plane, away from the triangle across edge k
-  double length[3];      ///< of edge k
+  Vec3 normal;        ///< unit
+  Vec3 direction[3];  ///< unit, of edge k from corner k on
+  Vec3 outward[3];    ///< unit, in the plane, away from the triangle across edge k
+  double length[3];   ///< of edge k
   double double_area;
   /// 2 area / longest edge squared: 0.87 for the equilateral one, 0 for a needle.
   [[nodiscard]] double quality() const;
@@ -26,12 +26,12 @@ struct LocalTriangle {
 /// Surface samples near one place, in a local frame, laid out for vector units, each with its best triangle so far.
 class SampleBlock {
  public:
-  std::vector<float> x, y, z;     ///< position
-  std::vector<float> nx, ny, nz;  ///< surface normal there
-  std::vector<float> weight;      ///< of the squared distance
-  std::vector<float> turn;        ///< of 1 - cos(angle of normals); 0: no normal term
-  std::vector<float> error;       ///< least weighted error over the triangles offered
-  std::vector<std::int32_t> best; ///< which of them
+  std::vector<float> x, y, z;      ///< position
+  std::vector<float> nx, ny, nz;   ///< surface normal there
+  std::vector<float> weight;       ///< of the squared distance
+  std::vector<float> turn;         ///< of 1 - cos(angle of normals); 0: no normal term
+  std::vector<float> error;        ///< least weighted error over the triangles offered
+  std::vector<std::int32_t> best;  ///< which of them
 
   /// Room for `count` samples; rounded up with samples of no weight, so that loops need no remainder.
   void resize(std::size_t count);

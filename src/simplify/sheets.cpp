@@ -90,9 +90,7 @@ class SheetCutter {
   }
 
   void group_edges() {
-    const auto lower = [&](std::size_t h) {
-      return std::min(from(static_cast<Index>(h)), to(static_cast<Index>(h)));
-    };
+    const auto lower = [&](std::size_t h) { return std::min(from(static_cast<Index>(h)), to(static_cast<Index>(h))); };
     edges_ = bucket_sort<EdgeEnd>(positions_.size(), 3 * triangles_.size(), lower, [&](std::size_t i) {
       const Index h = static_cast<Index>(i);
       return EdgeEnd{std::max(from(h), to(h)), h};

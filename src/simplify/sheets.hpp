@@ -6,9 +6,9 @@ namespace shapelight::simplify {
 
 /// Any triangles cut into sheets, each of them an oriented manifold with border.
 struct Sheets {
-  std::vector<Triangle> triangles;    ///< indices into source
-  std::vector<Index> source;          ///< per vertex, ascending: input vertex; copies of one are neighbours
-  std::vector<std::uint8_t> locked;   ///< per vertex: at a junction
+  std::vector<Triangle> triangles;   ///< indices into source
+  std::vector<Index> source;         ///< per vertex, ascending: input vertex; copies of one are neighbours
+  std::vector<std::uint8_t> locked;  ///< per vertex: at a junction
 };
 
 /// The general path of make_manifold(). Pre: indices in range, no face names a vertex twice.

@@ -21,6 +21,8 @@ namespace {
 using namespace simplify;
 
 constexpr int kMaxFlipPasses = 6;
+constexpr double kQuadricBoundary =
+    3.0;                                 // of planes on lines: they hold borders that only the measured error can judge
 constexpr double kAreaPerVertex = 1.15;  // of an even triangulation, in squared edge lengths: 2 / sqrt(3)
 
 double total_area(const TriangleMesh& mesh) {
@@ -45,7 +47,10 @@ class Ssim {
  public:
   Ssim(const TriangleMesh& mesh, const SimplifyTarget& target, const SsimGuide& guide, const SsimOptions& options,
        const FeatureEdges& features, const RunContext& context, MeshOddities* oddities)
-      : mesh_(mesh), guide_(guide), options_(options), context_(context),
+      : mesh_(mesh),
+        guide_(guide),
+        options_(options),
+        context_(context),
         input_(make_manifold(mesh, features, context.phase(0.0, 0.05, "prepare"), oddities)),
         input_source_(input_.source) {
     target_ = target;
@@ -65,9 +70,7 @@ class Ssim {
     if (reached(input_.mesh)) return finish(ManifoldMesh(input_));
     const std::vector<float> removal_weight = removal_weights();
     ManifoldMesh coarse = pre_collapse(removal_weight);
-    const SampleScheme scheme{.midpoints = false,
-                              .normal_weight = options_.normal_weight,
-                              .boundary_weight = options_.boundary_weight};
+    const SampleScheme scheme{.normal_weight = options_.normal_weight, .boundary_weight = options_.boundary_weight};
     MeasuredMesh measured(input_, surface(), std::move(coarse), scheme, context_.phase(0.2, 0.3, "attach samples"));
     std::optional<InputSurface> original;
     TriangleMesh original_mesh;
@@ -111,7 +114,7 @@ class Ssim {
     if (!is_needed) return input_;
     return collapse_quadrics(ManifoldMesh(input_), coarse,
                              {.placement = options_.placement,
-                              .boundary_weight = options_.boundary_weight,
+                              .boundary_weight = kQuadricBoundary * options_.boundary_weight,
                               .removal_weight = removal_weight,
                               .must_reach = options_.pre_collapse == 1.0},
                              context_.phase(0.05, 0.2, "collapse by quadrics"));

@@ -15,7 +15,8 @@ struct ShapeLimits {
   double min_quality = 0.01;
 };
 
-/// Does a face keep its side and shape when `before` becomes `after`? `worst_before`: least quality of the faces at hand.
+/// Does a face keep its side and shape when `before` becomes `after`? `worst_before`: least quality of the faces at
+/// hand.
 [[nodiscard]] bool keeps_shape(const LocalTriangle& before, const LocalTriangle& after, double worst_before,
                                const ShapeLimits& limits);
 
@@ -24,6 +25,7 @@ struct ShapeLimits {
 
 /// Splits vertices into classes of which no two members are neighbours: those of a class can be worked on at once.
 /// Greedy in the order given; classes keep that order.
-[[nodiscard]] std::vector<std::vector<Index>> independent_classes(const LiveMesh& mesh, std::span<const Index> vertices);
+[[nodiscard]] std::vector<std::vector<Index>> independent_classes(const LiveMesh& mesh,
+                                                                  std::span<const Index> vertices);
 
 }  // namespace shapelight::simplify

@@ -10,9 +10,9 @@
 namespace shapelight::simplify {
 namespace {
 
-constexpr double kTangential = 0.003;   // weight of a sample's displacement along its face
+constexpr double kTangential = 0.003;  // weight of a sample's displacement along its face
 constexpr double kOverRelaxation = 1.4;
-constexpr double kBackward = 0.06;      // weight of the vertex's own distance from the input
+constexpr double kBackward = 0.06;  // weight of the vertex's own distance from the input
 constexpr double kRegularisation = 1e-4;
 constexpr double kMinGain = 1e-7;
 constexpr ShapeLimits kLimits{.min_cosine = 0.5, .min_quality = 0.02};
@@ -116,7 +116,7 @@ void fit(MeasuredMesh& measured, Index v, double normal_weight, InputSurface& in
   const double now = trial.energy_now() + backward.weight * hit.distance_sq;
   for (const double s : {1.0, 0.5, 0.25}) {
     const Vec3 place = p + s * step;
-    const double energy = trial.energy_at(place);
+    const double energy = trial.energy_at(place, mesh.source[v]);
     if (!(energy < now)) continue;
     if (energy + backward.error_at(place, v, input) < now * (1.0 - kMinGain)) {
       trial.accept(measured);
@@ -147,7 +147,7 @@ void StarTrial::begin(const MeasuredMesh& measured, Index v) {
   worst_ = worst_quality(mesh, v);
 }
 
-double StarTrial::energy_at(const Vec3& place) {
+double StarTrial::energy_at(const Vec3& place, Index source) {
   const LiveMesh& mesh = measured_->mesh;
   const Vec3& origin = mesh.position[v_];
   place_ = place;
@@ -157,6 +157,13 @@ double StarTrial::energy_at(const Vec3& place) {
     const LocalTriangle after = triangle_with(mesh, f, v_, place, origin);
     if (!keeps_shape(triangle_with(mesh, f, v_, origin, origin), after, worst_, kLimits)) {
       return std::numeric_limits<double>::infinity();
+    }
+    if (source != kNoIndex) {
+      const Triangle& t = mesh.face(f);
+      const auto corner = [&](int k) { return t[k] == v_ ? source : mesh.source[t[k]]; };
+      if (!measured_->agrees_with_input(after.normal, corner(0), corner(1), corner(2))) {
+        return std::numeric_limits<double>::infinity();
+      }
     }
     block_.offer(after, id++);
   }

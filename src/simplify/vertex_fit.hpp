@@ -27,7 +27,8 @@ class StarTrial {
   /// Gathers the samples of the star.
   void begin(const MeasuredMesh& measured, Index v);
   /// Energy with the vertex at `place`, lines included; infinity where a face would turn or degenerate.
-  double energy_at(const Vec3& place);
+  /// `source`: the input vertex at that place, if there is one.
+  double energy_at(const Vec3& place, Index source = kNoIndex);
   /// Energy where the vertex is now.
   [[nodiscard]] double energy_now() const { return energy_now_; }
   /// Moves the vertex to the place that energy_at() was last asked about.

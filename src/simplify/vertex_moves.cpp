@@ -10,8 +10,8 @@
 namespace shapelight::simplify {
 namespace {
 
-constexpr std::size_t kMaxTrials = 6;   // places tried per vertex, the most promising first
-constexpr double kMinGain = 1e-3;       // share of the star's energy
+constexpr std::size_t kMaxTrials = 6;  // places tried per vertex, the most promising first
+constexpr double kMinGain = 1e-3;      // share of the star's energy
 constexpr std::size_t kChunk = 64;
 
 struct Candidate {
@@ -56,14 +56,14 @@ Index move(MeasuredMesh& measured, InputPlaces& places, Index v, double normal_w
   double least = trial.energy_now() * (1.0 - kMinGain);
   Index best = kNoIndex;
   for (const Candidate& c : tries) {
-    const double energy = trial.energy_at(places.position[c.vertex]);
+    const double energy = trial.energy_at(places.position[c.vertex], c.vertex);
     if (energy < least) {
       least = energy;
       best = c.vertex;
     }
   }
   if (best == kNoIndex) return kNoIndex;
-  if (best != tries.back().vertex) (void)trial.energy_at(places.position[best]);
+  if (best != tries.back().vertex) (void)trial.energy_at(places.position[best], best);
   trial.accept(measured);
   places.taken[best] = 1;
   return std::exchange(mesh.source[v], best);

@@ -47,8 +47,9 @@ Fan order_small_fan(std::span<Wedge> wedges) {
   for (std::size_t i = 1; i < wedges.size(); ++i) {
     ambiguous |= wedges[i].next == wedges[0].next || wedges[i].next == last;
   }
-  if (ambiguous) return Fan::Irregular;
-  return last == wedges[0].next ? Fan::Closed : Fan::Open;
+  const bool closed = last == wedges[0].next;
+  if (ambiguous || (closed && wedges.size() < 3)) return Fan::Irregular;  // two faces back to back are no fan
+  return closed ? Fan::Closed : Fan::Open;
 }
 
 Fan order_large_fan(std::span<Wedge> wedges) {

@@ -14,7 +14,6 @@ namespace shapelight {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kFlat = 1e-24;  // squared height by squared base below which a triangle is taken for its edges
 
 // The nearest floats on either side; float -> double is exact, so comparing finds out which way the cast went.
 float round_down(double x) {
@@ -22,22 +21,6 @@ float round_down(double x) {
   return static_cast<double>(f) <= x ? f : std::nextafter(f, -std::numeric_limits<float>::infinity());
 }
 float round_up(double x) { return -round_down(-x); }
-
-Vec3 closest_on_segment(const Vec3& query, const Vec3& a, const Vec3& b) {
-  const Vec3 ab = b - a;
-  const double along = (query - a).dot(ab);
-  const double length_sq = ab.squaredNorm();
-  if (!(along > 0.0)) return a;
-  return along < length_sq ? Vec3(a + along / length_sq * ab) : b;
-}
-
-Vec3 closest_on_edges(const Vec3& query, const Vec3& a, const Vec3& b, const Vec3& c) {
-  Vec3 best = closest_on_segment(query, a, b);
-  for (const Vec3& other : {closest_on_segment(query, b, c), closest_on_segment(query, c, a)}) {
-    if ((other - query).squaredNorm() < (best - query).squaredNorm()) best = other;
-  }
-  return best;
-}
 
 // The foot of the perpendicular, by modified Gram-Schmidt on the longer edge: unlike the barycentric quotients, this
 // stays accurate on slivers.
@@ -47,9 +30,9 @@ Vec3 foot_in_triangle(const Vec3& query, const Vec3& a, const Vec3& b, const Vec
   const double base_sq = base.squaredNorm();
   const Vec3 height = side - side.dot(base) / base_sq * base;
   const double height_sq = height.squaredNorm();
-  if (!(height_sq > kFlat * base_sq)) return closest_on_edges(query, a, b, c);
   const Vec3 aq = query - a;
   const Vec3 along = aq.dot(base) / base_sq * base;
+  if (!(height_sq > 0.0)) return a + along;  // flat to the last digit
   return a + along + (aq - along).dot(height) / height_sq * height;
 }
 
@@ -142,6 +125,13 @@ struct TriangleTree::Impl {
   [[nodiscard]] Vec3 to_local(const Vec3& p) const { return (p - center) * scale; }
   [[nodiscard]] Hit closest(const Vec3& query, Index hint) const;
   void search(const Vec3& query, Best& best) const;
+  void prefetch(std::uint32_t child) const {
+    if (child & BoxNode::kItem) {
+      __builtin_prefetch(&corners[child & ~BoxNode::kItem]);
+    } else {
+      __builtin_prefetch(&tree.nodes[child]);
+    }
+  }
 };
 
 TriangleTree::Impl::Impl(const TriangleMesh& mesh, const RunContext& context) {
@@ -223,9 +213,11 @@ void TriangleTree::Impl::search(const Vec3& query, Best& best) const {
       const std::size_t first = count;
       for (std::size_t k = 0; k < BoxNode::kWidth; ++k) {
         if (!(distance_sq[k] <= best.bound)) continue;
+        const std::uint32_t child = node.child[k];
+        prefetch(child);
         std::size_t at = count++;
         for (; at > first && open[at - 1].distance_sq < distance_sq[k]; --at) open[at] = open[at - 1];
-        open[at] = {distance_sq[k], node.child[k]};  // the nearest on top
+        open[at] = {distance_sq[k], child};  // the nearest on top
       }
     }
     do {

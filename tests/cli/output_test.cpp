@@ -275,7 +275,7 @@ TEST(Metrics, MeasureASample) {
   const Outcome done = work.run({"metrics", data("meshes/fandisk.off"), work.path("o.ply"), "--json", "-"});
   ASSERT_EQ(done.code, 0) << done.err;
   EXPECT_GT(done.json()["result"]["coverage_max"].get<double>(), 0.0);
-  const Outcome self = work.run({"metrics", data("meshes/fandisk.off"), data("meshes/fandisk.off"), "--json", "-"});
+  const Outcome self = work.run({"metrics", work.path("o.ply"), work.path("o.ply"), "--json", "-"});
   EXPECT_EQ(self.json()["result"]["coverage_max"], 0.0);
 }
 

@@ -76,8 +76,9 @@ struct SimplifyResult {
   Geometry geometry;                 ///< a mesh with the input's attributes; a cloud when the input was one
   std::vector<Index> source_vertex;  ///< per vertex: the input vertex it is, or (Placement::Optimal) descends from
   bool sampled = false;              ///< the input was a cloud: its points were sampled
-  std::size_t vertices_in = 0;       ///< of the surface that was simplified: those of its triangles
-  std::size_t faces_in = 0;          ///< of that surface: of a range image, what its grid was cut into
+  std::size_t vertices_in = 0;       ///< finite ones of the input: what ratios are shares of
+  std::size_t surface_vertices = 0;  ///< of those in faces
+  std::size_t faces_in = 0;          ///< faces of the surface; of a range image, what its grid was cut into
   double noise = 0.0;                ///< sigma, [input length unit]; of the methods that look at it
   bool denoised = false;             ///< the error was measured against a denoised surface
   MeshOddities oddities;

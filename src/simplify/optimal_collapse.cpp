@@ -1,7 +1,4 @@
-#include "simplify/collapse_rules.hpp"
-
-#include <algorithm>
-#include <cmath>
+#include "simplify/collapse_loop.hpp"
 
 namespace shapelight::simplify {
 namespace {
@@ -9,43 +6,25 @@ namespace {
 // Share of its trace added to a matrix before it is solved about the edge's midpoint.
 constexpr float kDamping = 1e-4f;
 
-}  // namespace
+// Placement::Optimal: u and v go where the sum of their quadrics is least. An edge belongs to the one of its ends that
+// became what it is later; the sum of two quadrics only grows, so that the other end's older keys are lower bounds.
+class OptimalRule : public CollapseRule {
+ public:
+  using CollapseRule::CollapseRule;
+  [[nodiscard]] float cost(Index u, Index v) const;
+  [[nodiscard]] bool is_legal(Index u, Index v, bool slivers) const;
+  Outcome collapse(Index u, Index v);
 
-CollapseRule::CollapseRule(CollapseMesh& mesh, std::span<const float> removal_weight) : mesh_(mesh) {
-  if (removal_weight.empty()) return;
-  weight_.resize(mesh.size());
-  for (Index v = 0; v < mesh.size(); ++v) weight_[v] = removal_weight[mesh.original(v)];
-}
-
-float CollapseRule::weighted(float cost, float weight) const {
-  // Costs lie between the square of single precision and the largest boundary weight, far from either end of float.
-  constexpr float kLeast = 1e-20f, kMost = 1e8f, kLast = 1e30f;
-  return std::isinf(weight) ? std::clamp(cost, kLeast, kMost) * kLast : std::min(cost * weight, kMost);
-}
-
-float InputRule::cost(Index u, Index v) const {
-  const auto& from = mesh_.vertex(u);
-  if (from.flags & (CollapseMesh::kLocked | CollapseMesh::kLine)) {
-    if (from.is(CollapseMesh::kLocked) || !mesh_.is_next_on_line(u, v)) return kNever;
-  }
-  const Vec3f d = mesh_.point(v).position() - mesh_.point(u).position();
-  const float rise = mesh_.point(u).error + from.quadric.rise(d);
-  const float error =
-      std::max(rise, 0.0f) + mesh_.point(v).error + kLengthPenalty * from.quadric.trace() * d.squaredNorm();
-  return weight_.empty() ? error : weighted(error, weight_[u]);
-}
-
-bool InputRule::is_legal(Index u, Index v, bool slivers) const {
-  return mesh_.keeps_topology(u, v) && mesh_.keeps_faces(u, v, mesh_.point(v).position(), slivers);
-}
-
-InputRule::Outcome InputRule::collapse(Index u, Index v) {
-  const Vec3f d = mesh_.point(v).position() - mesh_.point(u).position();
-  const Quadric& gone = mesh_.vertex(u).quadric;
-  mesh_.point(v).error += std::max(mesh_.point(u).error + gone.rise(d), 0.0f);
-  mesh_.vertex(v).quadric += gone.about(d);
-  return {mesh_.collapse(u, v), v, true};
-}
+ private:
+  struct Merger {
+    Index removed, kept;
+    Vec3f position;
+    float error;
+  };
+  [[nodiscard]] Merger merge(Index u, Index v) const;
+  [[nodiscard]] bool is_allowed(Index u, Index v) const;
+  std::uint32_t clock_ = 0;
+};
 
 bool OptimalRule::is_allowed(Index u, Index v) const {
   const auto& a = mesh_.vertex(u);
@@ -90,17 +69,18 @@ OptimalRule::Merger OptimalRule::merge(Index u, Index v) const {
   const float error = std::max(at_middle + sum.rise(y), 0.0f);
   if (!(error + tie < end.error)) return end;
   const Vec3f p = pu + half + y;
-  return y.dot(d) > 0.0f ? Merger{u, v, p, error} : Merger{v, u, p, error};
+  // The one of greater weight lives on, else the nearer one.
+  const bool keep_v = !weight_.empty() && weight_[u] != weight_[v] ? weight_[v] > weight_[u] : y.dot(d) > 0.0f;
+  return keep_v ? Merger{u, v, p, error} : Merger{v, u, p, error};
 }
 
 bool OptimalRule::is_legal(Index u, Index v, bool slivers) const {
   const Merger m = merge(u, v);
   return mesh_.keeps_topology(m.removed, m.kept) && mesh_.keeps_faces(m.removed, m.kept, m.position, slivers) &&
-         (m.position == mesh_.point(m.kept).position() ||
-          mesh_.keeps_faces(m.kept, m.removed, m.position, slivers));
+         (m.position == mesh_.point(m.kept).position() || mesh_.keeps_faces(m.kept, m.removed, m.position, slivers));
 }
 
-InputRule::Outcome OptimalRule::collapse(Index u, Index v) {
+CollapseRule::Outcome OptimalRule::collapse(Index u, Index v) {
   const Merger m = merge(u, v);
   auto& kept = mesh_.vertex(m.kept);
   auto& at = mesh_.point(m.kept);
@@ -111,6 +91,13 @@ InputRule::Outcome OptimalRule::collapse(Index u, Index v) {
   kept.stamp = ++clock_;
   if (!weight_.empty()) weight_[m.kept] = std::max(weight_[m.kept], weight_[m.removed]);
   return {mesh_.collapse(m.removed, m.kept), m.kept, false};
+}
+
+}  // namespace
+
+ManifoldMesh collapse_into_optimum(ManifoldMesh&& mesh, const SimplifyTarget& target, const QuadricCollapse& options,
+                                   const RunContext& context) {
+  return run_collapse<OptimalRule>(std::move(mesh), target, options, context);
 }
 
 }  // namespace shapelight::simplify

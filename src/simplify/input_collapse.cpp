@@ -1,0 +1,46 @@
+#include "simplify/collapse_loop.hpp"
+
+namespace shapelight::simplify {
+namespace {
+
+// Placement::Input: u goes into its neighbour v, which stays where it is. Every vertex keeps its own best target.
+class InputRule : public CollapseRule {
+ public:
+  using CollapseRule::CollapseRule;
+  [[nodiscard]] float cost(Index u, Index v) const;
+  [[nodiscard]] bool is_legal(Index u, Index v, bool slivers) const;
+  Outcome collapse(Index u, Index v);
+};
+
+float InputRule::cost(Index u, Index v) const {
+  const auto& from = mesh_.vertex(u);
+  if (from.flags & (CollapseMesh::kLocked | CollapseMesh::kLine)) {
+    if (from.is(CollapseMesh::kLocked) || !mesh_.is_next_on_line(u, v)) return kNever;
+  }
+  const Vec3f d = mesh_.point(v).position() - mesh_.point(u).position();
+  const float rise = mesh_.point(u).error + from.quadric.rise(d);
+  const float error =
+      std::max(rise, 0.0f) + mesh_.point(v).error + kLengthPenalty * from.quadric.trace() * d.squaredNorm();
+  return weight_.empty() ? error : weighted(error, weight_[u]);
+}
+
+bool InputRule::is_legal(Index u, Index v, bool slivers) const {
+  return mesh_.keeps_topology(u, v) && mesh_.keeps_faces(u, v, mesh_.point(v).position(), slivers);
+}
+
+CollapseRule::Outcome InputRule::collapse(Index u, Index v) {
+  const Vec3f d = mesh_.point(v).position() - mesh_.point(u).position();
+  const Quadric& gone = mesh_.vertex(u).quadric;
+  mesh_.point(v).error += std::max(mesh_.point(u).error + gone.rise(d), 0.0f);
+  mesh_.vertex(v).quadric += gone.about(d);
+  return {mesh_.collapse(u, v), v, true};
+}
+
+}  // namespace
+
+ManifoldMesh collapse_into_input(ManifoldMesh&& mesh, const SimplifyTarget& target, const QuadricCollapse& options,
+                                 const RunContext& context) {
+  return run_collapse<InputRule>(std::move(mesh), target, options, context);
+}
+
+}  // namespace shapelight::simplify
