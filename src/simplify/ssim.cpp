@@ -72,17 +72,16 @@ ManifoldMesh along_morton_curve(const ManifoldMesh& mesh, const RunContext& cont
 // The work of one run of SSim: the input, made manifold, in the work frame; its vertices number everything.
 class Ssim {
  public:
-  Ssim(const TriangleMesh& mesh, const SimplifyTarget& target, const SsimGuide& guide, const SsimOptions& options,
-       const FeatureEdges& features, const RunContext& context, MeshOddities* oddities)
+  /// `target` counts the vertices of `manifold`, which was made of `mesh`.
+  Ssim(const TriangleMesh& mesh, const ManifoldMesh& manifold, const SimplifyTarget& target, const SsimGuide& guide,
+       const SsimOptions& options, const RunContext& context)
       : mesh_(mesh),
         guide_(guide),
         options_(options),
         context_(context),
-        input_(
-            along_morton_curve(make_manifold(mesh, features, context.phase(0.0, 0.05, "prepare"), oddities), context)),
-        input_source_(input_.source) {
-    target_ = target;
-    if (target.vertices > 0) target_.vertices += input_.source.size() - num_merged_vertices(input_);
+        input_(along_morton_curve(manifold, context)),
+        input_source_(input_.source),
+        target_(target) {
     std::iota(input_.source.begin(), input_.source.end(), Index{0});
     const double area = total_area(input_.mesh);
     const double vertices = static_cast<double>(target.vertices > 0 ? target.vertices : target.faces / 2 + 1);
@@ -95,7 +94,6 @@ class Ssim {
   }
 
   SimplifiedMesh run() {
-    if (reached(input_.mesh)) return finish(ManifoldMesh(input_));
     const std::vector<float> removal_weight = removal_weights();
     ManifoldMesh coarse = pre_collapse(removal_weight);
     const SampleScheme scheme{.normal_weight = options_.normal_weight, .boundary_weight = options_.boundary_weight};
@@ -114,10 +112,6 @@ class Ssim {
  private:
   [[nodiscard]] std::span<const Vec3> surface() const {
     return denoised_.empty() ? std::span<const Vec3>(input_.mesh.positions) : std::span<const Vec3>(denoised_);
-  }
-
-  [[nodiscard]] bool reached(const TriangleMesh& mesh) const {
-    return target_.vertices > 0 ? mesh.positions.size() <= target_.vertices : mesh.triangles.size() <= target_.faces;
   }
 
   std::vector<float> removal_weights() const {
@@ -217,7 +211,7 @@ class Ssim {
   ManifoldMesh input_;               // sources number its own vertices
   std::vector<Index> input_source_;  // per vertex of input_: vertex of mesh_
   std::vector<Vec3> denoised_;
-  SimplifyTarget target_;  // in vertices of input_: locked copies count one by one
+  SimplifyTarget target_;
   WorkFrame frame_{};
 };
 
@@ -230,7 +224,13 @@ SimplifiedMesh simplify_ssim(const TriangleMesh& mesh, const SimplifyTarget& tar
   if ((target.vertices == 0) == (target.faces == 0)) {
     throw InvalidInput("simplify: expected a target of either vertices or faces");
   }
-  SimplifiedMesh result = Ssim(mesh, target, guide, options, features, context, oddities).run();
+  ManifoldMesh manifold = make_manifold(mesh, features, context.phase(0.0, 0.05, "prepare"), oddities);
+  SimplifyTarget copies = target;  // locked copies of one vertex count one by one, and are merged in the end
+  if (target.vertices > 0) copies.vertices += manifold.source.size() - num_merged_vertices(manifold);
+  const bool is_reached = target.vertices > 0 ? manifold.mesh.positions.size() <= copies.vertices
+                                              : manifold.mesh.triangles.size() <= copies.faces;
+  SimplifiedMesh result = is_reached ? merge_copies(std::move(manifold))
+                                     : Ssim(mesh, manifold, copies, guide, options, context).run();
   context.check();
   context.report(1.0, "done");
   return result;
