@@ -41,9 +41,9 @@ double cpu_seconds() {
 }
 
 struct Job {
-  TriangleMesh mesh;      // as read, unused vertices left out
-  TriangleMesh manifold;  // cut into sheets, for those who want no other
-  std::size_t vertices;   // target
+  TriangleMesh mesh;         // as read, unused vertices left out
+  TriangleMesh manifold;     // cut into sheets, for those who want no other
+  std::size_t vertices;      // target
   std::size_t faces, edges;  // what ours has at that target
 };
 
@@ -143,7 +143,8 @@ TriangleMesh run_cgal(const Job& job, double& seconds) {
   seconds = cpu_seconds() - start;
   mesh.collect_garbage();
   TriangleMesh result;
-  for (const auto v : mesh.vertices()) result.positions.emplace_back(mesh.point(v)[0], mesh.point(v)[1], mesh.point(v)[2]);
+  for (const auto v : mesh.vertices())
+    result.positions.emplace_back(mesh.point(v)[0], mesh.point(v)[1], mesh.point(v)[2]);
   for (const auto f : mesh.faces()) {
     Triangle t{};
     std::size_t corner = 0;

@@ -272,7 +272,7 @@ SimplifyOptions simplify_preset(SimplifyPreset preset, Placement placement) {
     case SimplifyPreset::Fast:
       options.ssim.pre_collapse = optimal ? 1.0 : 1.5;
       options.ssim.sweeps = optimal ? 3 : 2;
-      options.fields = fields_preset(Preset::Fast);
+      options.ssim.sample_weight = 1.0;  // the prior costs as much as all the rest, and pays on noise and details only
       break;
     case SimplifyPreset::Best:
       options.ssim.pre_collapse = optimal ? 2.0 : 4.0;

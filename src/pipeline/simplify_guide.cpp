@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "shapelight/denoise/taubin_smoothing.hpp"
+#include "shapelight/features/noise.hpp"
 #include "shapelight/graph/build_graph.hpp"
 #include "shapelight/sample/paper_sampling.hpp"
 #include "shapelight/sample/shape_sampling.hpp"
@@ -27,11 +28,15 @@ ShapeGuide::ShapeGuide(const Geometry& geometry, const Surface& surface, const S
                        const RunContext& context)
     : paper_(options.preset == SimplifyPreset::Paper), local_weight_(options.local_weight) {
   graph_ = graph_from_mesh(geometry.positions, surface.mesh.triangles, context.phase(0.0, 0.3, "build graph")).graph;
-  FieldsOptions stages = options.fields;
-  stages.segment = stages.segment && paper_;  // our ranking needs no segments
-  fields_ = compute_fields(graph_, geometry.kind(), stages, context.phase(0.3, 0.9, "compute fields"));
-  for (Index v = 0; v < graph_.size(); ++v) {
-    if (!graph_.neighbors_of(v).empty() && !graph_.outlier[v]) candidates_.push_back(v);
+  if (options.method == SimplifyMethod::Ssim && options.ssim.sample_weight == 1.0) {  // samples would have no say
+    fields_.noise = estimate_noise(graph_, context.phase(0.3, 0.9, "estimate noise"));
+  } else {
+    FieldsOptions stages = options.fields;
+    stages.segment = stages.segment && paper_;  // our ranking needs no segments
+    fields_ = compute_fields(graph_, geometry.kind(), stages, context.phase(0.3, 0.9, "compute fields"));
+    for (Index v = 0; v < graph_.size(); ++v) {
+      if (!graph_.neighbors_of(v).empty() && !graph_.outlier[v]) candidates_.push_back(v);
+    }
   }
   if (options.method == SimplifyMethod::Ssim && noise() > options.noise_threshold * mean_edge_length()) {
     denoised_ = denoise(graph_, surface, context.phase(0.9, 1.0, "denoise"));

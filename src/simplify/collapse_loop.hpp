@@ -110,13 +110,13 @@ class CollapseLoop {
 
   void try_collapse(Index u) {
     const auto& vertex = mesh_.vertex(u);
-    const bool exact = !mesh_.vertex(vertex.target).is_dead() && rule_.cost(u, vertex.target) == vertex.key;
-    if (!exact) {
+    if (mesh_.vertex(vertex.target).is_dead() || !rule_.is_exact(u)) {
       evaluate(u);
       if (vertex.key == kParked) return;
       if (!queue_.is_due(vertex.key)) return push(u);
     }
-    if (rule_.is_legal(u, vertex.target, slivers_) || choose_legal(u)) collapse(u, vertex.target);
+    for (const Index v : mesh_.ring(u)) mesh_.prefetch_vertex(v);
+    if (rule_.prepare(u, vertex.target, slivers_) || choose_legal(u)) collapse();
   }
 
   // The cheapest legal target of u: true when it is due. Otherwise u is queued or parked.
@@ -128,7 +128,7 @@ class CollapseLoop {
     }
     std::sort(candidates_.begin(), candidates_.end());
     for (const auto& [cost, v] : candidates_) {
-      if (!rule_.is_legal(u, v, slivers_)) continue;
+      if (!rule_.prepare(u, v, slivers_)) continue;
       set(u, cost, v);
       if (queue_.is_due(cost)) return true;
       push(u);
@@ -138,8 +138,8 @@ class CollapseLoop {
     return false;
   }
 
-  void collapse(Index u, Index v) {
-    const auto [wing, kept, gained_own_edges] = rule_.collapse(u, v);
+  void collapse() {
+    const auto [wing, kept, gained_own_edges] = rule_.collapse();
     requeue(kept);
     for (const Index w : wing.opposite) {
       if (w != kNoIndex) wake(w);
@@ -175,7 +175,7 @@ class CollapseLoop {
 
 template <class Rule>
 ManifoldMesh run_collapse(ManifoldMesh&& input, const SimplifyTarget& target, const QuadricCollapse& options,
-                 const RunContext& context) {
+                          const RunContext& context) {
   CollapseMesh mesh(input, options.boundary_weight, context);
   CollapseLoop<Rule> loop(mesh, options.removal_weight, target, input.source.size() - num_merged_vertices(input),
                           context);

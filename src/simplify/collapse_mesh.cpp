@@ -1,6 +1,7 @@
 #include "simplify/collapse_mesh.hpp"
 
 #include <algorithm>
+#include <cstring>
 
 namespace shapelight::simplify {
 namespace {
@@ -19,18 +20,25 @@ std::size_t position_in(std::span<const Index> ring, Index v) {
   return i;
 }
 
-std::size_t count_common(std::span<const Index> a, std::span<const Index> b) {
-  std::size_t common = 0;
-  if (a.size() * b.size() <= kLargeRings) {
-    for (const Index x : a) {
-      for (const Index y : b) common += x == y;
-    }
-    return common;
-  }
+std::size_t count_common_of_large(std::span<const Index> a, std::span<const Index> b) {
   std::vector<Index> sorted(a.begin(), a.end());
   std::sort(sorted.begin(), sorted.end());
+  std::size_t common = 0;
   for (const Index y : b) common += std::binary_search(sorted.begin(), sorted.end(), y);
   return common;
+}
+
+// Rings are padded to whole blocks with kNoIndex, so that four are compared at once.
+std::size_t count_common(std::span<const Index> a, std::span<const Index> b) {
+  if (a.size() * b.size() > kLargeRings) return count_common_of_large(a, b);
+  using Block = Index __attribute__((vector_size(16)));
+  Block common{};
+  for (std::size_t i = 0; i < b.size(); i += 4) {
+    Block block;
+    std::memcpy(&block, b.data() + i, sizeof block);
+    for (const Index x : a) common -= reinterpret_cast<Block>(block == x);
+  }
+  return common[0] + common[1] + common[2] + common[3];
 }
 
 }  // namespace
@@ -95,6 +103,7 @@ void CollapseMesh::remove(Index v, Index neighbor) {
   Index* slot = begin;
   while (*slot != neighbor) ++slot;
   std::copy(slot + 1, end, slot);
+  *(end - 1) = kNoIndex;
   --vertices_[v].size;
 }
 
@@ -107,11 +116,12 @@ void CollapseMesh::store_ring(Index v, Index u, std::span<const Index> ring) {
       kept.capacity = vertices_[u].capacity;
     } else {
       kept.ring = static_cast<Index>(arena_.size());
-      kept.capacity = static_cast<Index>((ring.size() + ring.size() / 2 + 3) / 4 * 4);
+      kept.capacity = padded(ring.size() + ring.size() / 2);
       arena_.resize(arena_.size() + kept.capacity);
     }
   }
-  std::copy(ring.begin(), ring.end(), arena_.begin() + kept.ring);
+  const auto end = std::copy(ring.begin(), ring.end(), arena_.begin() + kept.ring);
+  std::fill(end, arena_.begin() + kept.ring + padded(ring.size()), kNoIndex);
   kept.size = static_cast<Index>(ring.size());
 }
 
@@ -129,6 +139,7 @@ CollapseMesh::Wing CollapseMesh::collapse(Index u, Index v) {
   const std::size_t n = ring_u.size(), m = ring_v.size();
   const std::size_t at_v = position_in(ring_u, v), at_u = position_in(ring_v, u);
   const bool u_open = vertices_[u].is(kOpen);
+  for (const Index w : ring_u) __builtin_prefetch(arena_.data() + vertices_[w].ring);
   Wing wing{{}, {kNoIndex, kNoIndex}};
   gained_.clear();
   merged_.clear();

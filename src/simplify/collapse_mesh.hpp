@@ -72,6 +72,9 @@ class CollapseMesh {
   /// Removes u into v. Pre: keeps_topology(u, v). Leaves positions and quadrics alone.
   Wing collapse(Index u, Index v);
 
+  /// Room for a ring of this size: whole blocks of four, unused places hold kNoIndex.
+  [[nodiscard]] static Index padded(std::size_t size) { return static_cast<Index>((size + 3) / 4 * 4); }
+
   /// Fetch ahead: the vertex, its ring (once the vertex is there), its neighbours' points (once the ring is there).
   void prefetch_vertex(Index v) const { __builtin_prefetch(&vertices_[v]); }
   void prefetch_ring(Index v) const {

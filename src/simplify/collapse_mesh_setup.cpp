@@ -7,15 +7,6 @@
 #include "simplify/wedges.hpp"
 
 namespace shapelight::simplify {
-namespace {
-
-// Room for a ring: most grow by two in their first merger.
-constexpr Index ring_capacity(std::size_t size) {
-  return static_cast<Index>(std::max<std::size_t>(8, (size + 3) / 4 * 4));
-}
-
-}  // namespace
-
 CollapseMesh::CollapseMesh(const ManifoldMesh& mesh, double boundary_weight, const RunContext& context) {
   const auto& positions = mesh.mesh.positions;
   const auto& triangles = mesh.mesh.triangles;
@@ -36,14 +27,15 @@ CollapseMesh::CollapseMesh(const ManifoldMesh& mesh, double boundary_weight, con
 
   vertices_.resize(n);
   lines_.assign(n, {kNoIndex, kNoIndex});
+  constexpr Index kLeastCapacity = 8;  // most rings grow by two in their first merger
   Index used = 0;
   for (std::size_t v = 0; v < n; ++v) {
     vertices_[v].ring = used;
-    vertices_[v].capacity = ring_capacity(wedges.at(v).size() + 1);
+    vertices_[v].capacity = std::max(padded(wedges.at(v).size() + 1), kLeastCapacity);
     used += vertices_[v].capacity;
   }
   arena_.reserve(used + used / 4);
-  arena_.resize(used);
+  arena_.resize(used, kNoIndex);
   parallel::for_chunks(context, n, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
       Vertex& vertex = vertices_[v];

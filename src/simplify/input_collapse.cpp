@@ -8,8 +8,14 @@ class InputRule : public CollapseRule {
  public:
   using CollapseRule::CollapseRule;
   [[nodiscard]] float cost(Index u, Index v) const;
-  [[nodiscard]] bool is_legal(Index u, Index v, bool slivers) const;
-  Outcome collapse(Index u, Index v);
+  // Is the key of u still the cost of its target? The target may have grown dearer.
+  [[nodiscard]] bool is_exact(Index u) const { return cost(u, mesh_.vertex(u).target) == mesh_.vertex(u).key; }
+  // May u go into v? If so, collapse() does it.
+  [[nodiscard]] bool prepare(Index u, Index v, bool slivers);
+  Outcome collapse();
+
+ private:
+  Index removed_ = kNoIndex, kept_ = kNoIndex;
 };
 
 float InputRule::cost(Index u, Index v) const {
@@ -24,11 +30,14 @@ float InputRule::cost(Index u, Index v) const {
   return weight_.empty() ? error : weighted(error, weight_[u]);
 }
 
-bool InputRule::is_legal(Index u, Index v, bool slivers) const {
+bool InputRule::prepare(Index u, Index v, bool slivers) {
+  removed_ = u;
+  kept_ = v;
   return mesh_.keeps_topology(u, v) && mesh_.keeps_faces(u, v, mesh_.point(v).position(), slivers);
 }
 
-CollapseRule::Outcome InputRule::collapse(Index u, Index v) {
+CollapseRule::Outcome InputRule::collapse() {
+  const Index u = removed_, v = kept_;
   const Vec3f d = mesh_.point(v).position() - mesh_.point(u).position();
   const Quadric& gone = mesh_.vertex(u).quadric;
   mesh_.point(v).error += std::max(mesh_.point(u).error + gone.rise(d), 0.0f);

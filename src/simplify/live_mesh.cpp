@@ -104,6 +104,14 @@ bool LiveMesh::is_line_edge(Index a, Index b) const {
   return locked[a] && locked[b];  // two junctions may be joined by a line of one edge
 }
 
+bool LiveMesh::may_lose_face(Index v) const {
+  const std::size_t faces = stars_[v].size();
+  if (faces != 2 && faces != 3) return faces > 3;
+  return std::any_of(stars_[v].begin(), stars_[v].end(), [&](Index f) {  // on a border
+    return faces_at_edge(v, after(face_[f], v))[1] == kNoIndex;
+  });
+}
+
 bool LiveMesh::may_collapse(Index u, Index v) const {
   if (locked[u]) return false;
   if (is_on_line(u)) {
@@ -117,12 +125,7 @@ bool LiveMesh::may_collapse(Index u, Index v) const {
   for (int i = 0; i < 2; ++i) {
     if (shared[i] == kNoIndex) continue;
     apex[i] = opposite(face_[shared[i]], u, v);
-    // The apex loses a face: what would be left must still be a fan, and a border apex must keep a face.
-    const std::size_t faces = stars_[apex[i]].size();
-    const bool on_border = std::any_of(stars_[apex[i]].begin(), stars_[apex[i]].end(), [&](Index f) {
-      return faces_at_edge(apex[i], after(face_[f], apex[i]))[1] == kNoIndex;
-    });
-    if (faces <= (on_border ? 1U : 3U)) return false;
+    if (!may_lose_face(apex[i])) return false;
   }
   for (const Index f : stars_[u]) {  // link condition: no common neighbour but the apexes
     for (const Index w : face_[f]) {
@@ -172,7 +175,7 @@ bool LiveMesh::may_flip(Index f, Index g, std::array<Index, 4>& quad) const {
     const Index c = t[(i + 2) % 3];
     const Index d = opposite(face_[g], a, b);
     if (c == d || is_line_edge(a, b) || faces_at_edge(c, d)[0] != kNoIndex) return false;
-    if (stars_[a].size() <= 3 || stars_[b].size() <= 3) return false;
+    if (!may_lose_face(a) || !may_lose_face(b)) return false;
     quad = {a, b, c, d};
     return true;
   }

@@ -77,6 +77,9 @@ class LiveMesh {
   [[nodiscard]] ManifoldMesh compact() &&;
 
  private:
+  /// Would one face less leave v a fan, of two faces in the inside of the surface at least and of one on its border?
+  [[nodiscard]] bool may_lose_face(Index v) const;
+
   std::vector<Triangle> face_;
   StarTable stars_;
   std::vector<std::array<Index, 2>> line_edges_;  ///< per vertex: its two line edges; kNoIndex twice off lines

@@ -12,8 +12,11 @@ class OptimalRule : public CollapseRule {
  public:
   using CollapseRule::CollapseRule;
   [[nodiscard]] float cost(Index u, Index v) const;
-  [[nodiscard]] bool is_legal(Index u, Index v, bool slivers) const;
-  Outcome collapse(Index u, Index v);
+  // Does u still own the edge to its target? Then neither end has changed.
+  [[nodiscard]] bool is_exact(Index u) const { return owns(u, mesh_.vertex(u).target); }
+  // May u and v become one? If so, collapse() does it.
+  [[nodiscard]] bool prepare(Index u, Index v, bool slivers);
+  Outcome collapse();
 
  private:
   struct Merger {
@@ -23,6 +26,11 @@ class OptimalRule : public CollapseRule {
   };
   [[nodiscard]] Merger merge(Index u, Index v) const;
   [[nodiscard]] bool is_allowed(Index u, Index v) const;
+  [[nodiscard]] bool owns(Index u, Index v) const {
+    const std::uint32_t stamp_u = mesh_.vertex(u).stamp, stamp_v = mesh_.vertex(v).stamp;
+    return stamp_u > stamp_v || (stamp_u == stamp_v && u > v);
+  }
+  Merger prepared_;
   std::uint32_t clock_ = 0;
 };
 
@@ -36,8 +44,7 @@ bool OptimalRule::is_allowed(Index u, Index v) const {
 }
 
 float OptimalRule::cost(Index u, Index v) const {
-  const std::uint32_t stamp_u = mesh_.vertex(u).stamp, stamp_v = mesh_.vertex(v).stamp;
-  if (stamp_u < stamp_v || (stamp_u == stamp_v && u < v) || !is_allowed(u, v)) return kNever;
+  if (!owns(u, v) || !is_allowed(u, v)) return kNever;
   const float trace = mesh_.vertex(u).quadric.trace() + mesh_.vertex(v).quadric.trace();
   const float length_sq = (mesh_.point(v).position() - mesh_.point(u).position()).squaredNorm();
   const float error = merge(u, v).error + kLengthPenalty * trace * length_sq;
@@ -74,14 +81,14 @@ OptimalRule::Merger OptimalRule::merge(Index u, Index v) const {
   return keep_v ? Merger{u, v, p, error} : Merger{v, u, p, error};
 }
 
-bool OptimalRule::is_legal(Index u, Index v, bool slivers) const {
-  const Merger m = merge(u, v);
+bool OptimalRule::prepare(Index u, Index v, bool slivers) {
+  const Merger m = prepared_ = merge(u, v);
   return mesh_.keeps_topology(m.removed, m.kept) && mesh_.keeps_faces(m.removed, m.kept, m.position, slivers) &&
          (m.position == mesh_.point(m.kept).position() || mesh_.keeps_faces(m.kept, m.removed, m.position, slivers));
 }
 
-CollapseRule::Outcome OptimalRule::collapse(Index u, Index v) {
-  const Merger m = merge(u, v);
+CollapseRule::Outcome OptimalRule::collapse() {
+  const Merger& m = prepared_;
   auto& kept = mesh_.vertex(m.kept);
   auto& at = mesh_.point(m.kept);
   kept.quadric = kept.quadric.about(m.position - at.position());

@@ -61,11 +61,11 @@ struct Quadric {
   /// Offset of the least value of the function with `damping` added to the diagonal of A.
   [[nodiscard]] Vec3f minimum(float damping) const {
     // A = L D L^T; damping keeps every pivot positive.
-    const float d0 = xx + damping, l1 = xy / d0, l2 = xz / d0;
-    const float d1 = yy + damping - l1 * xy, t = yz - l2 * xy, l3 = t / d1;
-    const float d2 = zz + damping - l2 * xz - l3 * t;
+    const float i0 = 1.0f / (xx + damping), l1 = xy * i0, l2 = xz * i0;
+    const float t = yz - l2 * xy, i1 = 1.0f / (yy + damping - l1 * xy), l3 = t * i1;
+    const float i2 = 1.0f / (zz + damping - l2 * xz - l3 * t);
     const float y0 = -x, y1 = -y - l1 * y0, y2 = -z - l2 * y0 - l3 * y1;
-    const float z2 = y2 / d2, z1 = y1 / d1 - l3 * z2, z0 = y0 / d0 - l1 * z1 - l2 * z2;
+    const float z2 = y2 * i2, z1 = y1 * i1 - l3 * z2, z0 = y0 * i0 - l1 * z1 - l2 * z2;
     return {z0, z1, z2};
   }
 };

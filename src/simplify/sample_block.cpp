@@ -60,8 +60,11 @@ SHAPELIGHT_VECTORIZE void offer_packed(const PackedTriangle& triangle, std::int3
     const float farthest_out = std::max(std::max(s0, s1), s2);
     const float in_plane = farthest_out > 0.0F ? nearest_edge : 0.0F;
     const float height = t.n[0] * px + t.n[1] * py + t.n[2] * pz;
-    const float cosine = t.n[0] * nx[i] + t.n[1] * ny[i] + t.n[2] * nz[i];
-    const float e = weight[i] * (height * height + in_plane) + turn[i] * (1.0F - cosine);
+    const float dx = nx[i] - t.n[0];
+    const float dy = ny[i] - t.n[1];
+    const float dz = nz[i] - t.n[2];
+    const float turned = 0.5F * (dx * dx + dy * dy + dz * dz);  // 1 - cosine, exact for small angles too
+    const float e = weight[i] * (height * height + in_plane) + turn[i] * turned;
     const bool better = e < error[i];
     error[i] = better ? e : error[i];
     best[i] = better ? id : best[i];

@@ -174,10 +174,10 @@ class Ssim {
 
   SimplifiedMesh finish(ManifoldMesh&& result) const {
     for (std::size_t v = 0; v < result.source.size(); ++v) {
-      result.source[v] = input_source_[result.source[v]];
       Vec3& p = result.mesh.positions[v];
-      const bool is_input = options_.placement == Placement::Input || result.locked[v];
-      p = is_input ? mesh_.positions[result.source[v]] : frame_.from(p);
+      const bool stayed = p == input_.mesh.positions[result.source[v]];
+      result.source[v] = input_source_[result.source[v]];
+      p = stayed ? mesh_.positions[result.source[v]] : frame_.from(p);  // to the bit where nothing has moved
     }
     return merge_copies(std::move(result));
   }

@@ -112,6 +112,7 @@ TEST(SurfaceDistance, OfATiltedPlane) {
   EXPECT_NEAR(d.forward.mean, slope / 2.0, 1e-6);
   EXPECT_NEAR(d.forward.rms, slope / std::sqrt(3.0), 1e-6);
   EXPECT_NEAR(d.forward.max, slope, 1e-15);
+  EXPECT_NEAR(d.vertex_rms, slope / std::sqrt(2.0), 1e-15);
   EXPECT_NEAR(d.normal_deviation.rms, std::atan(slope), 1e-7);
   EXPECT_NEAR(d.normal_deviation.p95, std::atan(slope), 1e-7);
   EXPECT_NEAR(d.symmetric.mean, 0.5 * (d.forward.mean + d.backward.mean), 1e-15);
@@ -141,11 +142,13 @@ TEST(SurfaceDistance, VerticesWithoutTriangleAreNoSurface) {
 }
 
 TEST(SurfaceDistance, DegenerateTrianglesHaveNoNormal) {
-  TriangleMesh plane = square(4);
-  plane.triangles.insert(plane.triangles.begin(), {{0, 0, 1}, {3, 3, 3}, {0, 1, 2}});
-  const SurfaceDistance d = measure_surface_distance(square(4), plane, {.samples = 20000});
-  EXPECT_LT(d.symmetric.max, 1e-15);
-  EXPECT_LT(d.normal_deviation.rms, 1e-7);
+  TriangleMesh flipped = moved(square(4), Vec3(0, 0, 0.4));
+  for (Triangle& t : flipped.triangles) std::swap(t[1], t[2]);
+  flipped.positions.insert(flipped.positions.end(), {{0, 0.5, 0}, {0.5, 0.5, 0}, {1, 0.5, 0}});
+  flipped.triangles.insert(flipped.triangles.begin(), {{25, 26, 27}, {3, 3, 3}});
+  const SurfaceDistance d = measure_surface_distance(square(4), flipped, {.samples = 20000});
+  EXPECT_LT(d.forward.mean, 0.3);  // the line in the middle is the nearest to many
+  EXPECT_NEAR(d.normal_deviation.rms, std::numbers::pi, 1e-6);
 }
 
 TEST(SurfaceDistance, OppositeFacesDeviateByHalfATurn) {
