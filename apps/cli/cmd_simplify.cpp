@@ -12,7 +12,7 @@ namespace shapelight::cli {
 namespace {
 
 constexpr int kTargetUnreachable = 5;
-constexpr std::uint64_t kBytesPerPoint = 1500;  // measured peak of a whole run, rounded up
+constexpr std::uint64_t kBytesPerPoint = 1700;  // measured peak of a whole run, rounded up
 
 struct SimplifyArguments {
   std::string input, output, vertices, faces, ratio, max_error, preset;

@@ -197,13 +197,28 @@ class AtlasWalk {
  public:
   AtlasWalk(const Atlas& atlas, const TriangleMesh& mesh) : atlas_(atlas), mesh_(mesh) {}
 
-  // Ends when a face is as close as `least_sq`, or when all ways on lead farther off than the start is.
-  Index walk(Index from, const Vec3& target, double least_sq) {
+  struct End {
+    Index face;
+    bool arrived;  // as close as `least_sq`
+  };
+  // Ends when a face is as close as `least_sq`, or when all ways on lead farther off than the start is; the ways are
+  // followed twice as far off where that gets there.
+  End walk(Index from, const Vec3& target, double least_sq) {
+    const Step start(distance_sq(from, target), from);
+    const Step near = search(start, target, least_sq, start.first);
+    if (near.first <= least_sq) return {near.second, true};
+    const Step far = search(start, target, least_sq, 4.0 * start.first);
+    return far.first <= least_sq ? End{far.second, true} : End{near.second, false};
+  }
+
+ private:
+  using Step = std::pair<double, Index>;  // squared distance, face
+
+  Step search(const Step& start, const Vec3& target, double least_sq, double farthest_sq) {
     constexpr std::size_t kMaxFaces = 256;
-    met_.assign(1, from);
-    open_.assign(1, {distance_sq(from, target), from});
-    Step best = open_.front();
-    const double farthest = best.first;
+    met_.assign(1, start.second);
+    open_.assign(1, start);
+    Step best = start;
     while (!open_.empty() && best.first > least_sq && met_.size() < kMaxFaces) {
       std::pop_heap(open_.begin(), open_.end(), std::greater<>());
       const Index face = open_.back().second;
@@ -212,17 +227,14 @@ class AtlasWalk {
         if (next == kNoIndex || std::find(met_.begin(), met_.end(), next) != met_.end()) continue;
         met_.push_back(next);
         const Step step(distance_sq(next, target), next);
-        if (step.first > farthest) continue;
+        if (step.first > farthest_sq) continue;
         open_.push_back(step);
         best = std::min(best, step);
         std::push_heap(open_.begin(), open_.end(), std::greater<>());
       }
     }
-    return best.second;
+    return best;
   }
-
- private:
-  using Step = std::pair<double, Index>;
 
   [[nodiscard]] double distance_sq(Index face, const Vec3& target) const {
     const auto [a, b, c] = corners_of(mesh_, face);
@@ -235,6 +247,30 @@ class AtlasWalk {
   std::vector<Step> open_;  // a heap, closest first
 };
 
+// The input faces whose texture coordinates an output face's corners get. A seam that was shortened may leave the
+// face's centre on the other side; then another place of the face is the start from which all corners can be reached.
+std::array<Index, 3> faces_for_corners(const TriangleTree& tree, AtlasWalk& atlas, const std::array<Vec3, 3>& corner) {
+  const Vec3 center = (corner[0] + corner[1] + corner[2]) / 3.0;
+  std::array<Index, 3> best{};
+  int best_arrived = -1;
+  Index hint = kNoIndex;
+  for (const Vec3& place : {center, Vec3(0.5 * (center + corner[0])), Vec3(0.5 * (center + corner[1])),
+                            Vec3(0.5 * (center + corner[2]))}) {
+    hint = tree.closest(place, hint).triangle;
+    std::array<Index, 3> faces{};
+    int arrived = 0;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const AtlasWalk::End end = atlas.walk(hint, corner[c], tree.closest(corner[c], hint).distance_sq);
+      faces[c] = end.face;
+      arrived += end.arrived;
+    }
+    if (arrived > best_arrived) best = faces;
+    best_arrived = std::max(best_arrived, arrived);
+    if (arrived == 3) break;
+  }
+  return best;
+}
+
 std::vector<TexCoord> transfer_texcoords(const Geometry& input, const Surface& surface, const TriangleTree& tree,
                                          const TriangleMesh& output, const RunContext& context) {
   const Atlas atlas(input, surface);
@@ -243,12 +279,13 @@ std::vector<TexCoord> transfer_texcoords(const Geometry& input, const Surface& s
     AtlasWalk walk(atlas, surface.mesh);
     for (std::size_t f = begin; f < end; ++f) {
       const std::array<Vec3, 3> corner = corners_of(output, f);
-      const Index below = tree.closest((corner[0] + corner[1] + corner[2]) / 3.0).triangle;
-      for (std::size_t c = 0; c < 3; ++c) {
-        const TriangleTree::Hit hit = tree.closest(corner[c], below);
-        const Index face = atlas.seams.empty() ? hit.triangle : walk.walk(below, corner[c], hit.distance_sq);
-        result[3 * f + c] = texcoord_at(input, surface, face, corner[c]);
+      std::array<Index, 3> faces{};
+      if (atlas.seams.empty()) {
+        for (std::size_t c = 0; c < 3; ++c) faces[c] = tree.closest(corner[c]).triangle;
+      } else {
+        faces = faces_for_corners(tree, walk, corner);
       }
+      for (std::size_t c = 0; c < 3; ++c) result[3 * f + c] = texcoord_at(input, surface, faces[c], corner[c]);
     }
   });
   return result;

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <utility>
 
+#include "shapelight/spatial/kd_tree.hpp"
 #include "shapelight/spatial/triangle_tree.hpp"
 
 namespace shapelight {
@@ -12,7 +14,7 @@ namespace {
 constexpr double kFolded = -0.9;   // cosine between the normals of faces that lie on each other
 constexpr double kAgainst = -0.5;  // cosine from which a face looks against the input
 constexpr double kNoArea = 1e-9;   // twice the area over the longest edge squared: no normal to speak of
-constexpr int kMaxPasses = 4;
+constexpr int kMaxPasses = 8;
 
 Vec3 normal_of(const std::vector<Vec3>& positions, const Triangle& t) {
   const Vec3 u = positions[t[1]] - positions[t[0]], v = positions[t[2]] - positions[t[0]];
@@ -104,25 +106,118 @@ std::optional<Flip> best_flip(const TriangleMesh& mesh, const EdgeUses& edges, I
   return best;
 }
 
-// A vertex of three faces allows no flip. It is moved to the middle of the triangle that its neighbours make, if the
-// face's vertex v is one.
-void pull_into_ring(TriangleMesh& mesh, const EdgeUses& edges, Index face, Index v) {
-  const Triangle& t = mesh.triangles[face];
-  const std::size_t k = static_cast<std::size_t>(std::find(t.begin(), t.end(), v) - t.begin());
-  const Index a = t[(k + 1) % 3], b = t[(k + 2) % 3];
-  // The third vertex of the face beyond the edge from v to w.
-  const auto beyond = [&](Index w) {
-    const std::span<const EdgeUse> sides = edges.faces_at(v, w);
-    if (sides.size() != 2) return kNoIndex;
-    for (const Index x : mesh.triangles[sides[0].face == face ? sides[1].face : sides[0].face]) {
-      if (x != v && x != w) return x;
+// Where no flip helps, a corner of the face moves towards the middle of its neighbours.
+class Relocation {
+ public:
+  Relocation(const TriangleMesh& reference, SimplifiedMesh& result, Placement placement)
+      : reference_(reference), result_(result), placement_(placement) {}
+
+  // Moves the corner that leaves the faces around it best, if any leaves none of them folded on all its neighbours.
+  template <class IsFixed>
+  void relocate(const EdgeUses& edges, const Triangle& face, IsFixed&& is_fixed) {
+    std::optional<Move> best;
+    double best_fold = kFolded;
+    for (const Index v : face) {
+      const std::optional<Move> move = is_fixed(v) ? std::nullopt : move_of(edges, v);
+      if (!move) continue;
+      const double fold = fold_after(edges, v, *move);
+      if (fold <= best_fold) continue;
+      best_fold = fold;
+      best = move;
     }
-    return kNoIndex;
+    if (!best) return;
+    result_.mesh.positions[best->vertex] = best->place;
+    if (placement_ == Placement::Input) {
+      used_[result_.source_vertex[best->vertex]] = 0;
+      used_[best->source] = 1;
+      result_.source_vertex[best->vertex] = best->source;
+    }
+  }
+
+ private:
+  struct Move {
+    Index vertex;
+    Index source;
+    Vec3 place;
   };
-  const Index c = beyond(a);
-  if (c == kNoIndex || c != beyond(b) || edges.faces_at(v, c).size() != 2) return;
-  mesh.positions[v] = (mesh.positions[a] + mesh.positions[b] + mesh.positions[c]) / 3.0;
-}
+
+  [[nodiscard]] std::vector<Index> star(Index v) const {
+    std::vector<Index> faces;
+    for (Index f = 0; f < result_.mesh.triangles.size(); ++f) {
+      const Triangle& t = result_.mesh.triangles[f];
+      if (t[0] == v || t[1] == v || t[2] == v) faces.push_back(f);
+    }
+    return faces;
+  }
+
+  // Border vertices go along the border; those at edges of more than two faces stay.
+  std::optional<Move> move_of(const EdgeUses& edges, Index v) {
+    Vec3 sum[2] = {Vec3::Zero(), Vec3::Zero()};  // of the neighbours along borders, of all
+    double count[2] = {0.0, 0.0};
+    for (const Index f : star(v)) {
+      for (const Index w : result_.mesh.triangles[f]) {
+        const std::size_t sides = w == v ? 0 : edges.faces_at(v, w).size();
+        if (sides > 2) return {};
+        if (sides == 1) sum[0] += result_.mesh.positions[w], count[0] += 1.0;
+        if (sides > 0) sum[1] += result_.mesh.positions[w] / static_cast<double>(sides), count[1] += 1.0 / static_cast<double>(sides);
+      }
+    }
+    const std::size_t kind = count[0] > 0.0 ? 0 : 1;
+    const Vec3 place = sum[kind] / count[kind];
+    if (placement_ == Placement::Optimal) return Move{v, kNoIndex, place};
+    prepare_places();
+    std::vector<Neighbor> near;
+    places_->nearest(place, 64, near);
+    for (const Neighbor& n : near) {
+      const Index source = place_of_[n.index];
+      if (used_[source] == 0) return Move{v, source, reference_.positions[source]};
+    }
+    return {};
+  }
+
+  // Input vertices in faces, and which of them the result has.
+  void prepare_places() {
+    if (places_) return;
+    std::vector<std::uint8_t> in_face(reference_.positions.size(), 0);
+    for (const Triangle& t : reference_.triangles) in_face[t[0]] = in_face[t[1]] = in_face[t[2]] = 1;
+    std::vector<Vec3> positions;
+    for (Index v = 0; v < in_face.size(); ++v) {
+      if (in_face[v] == 0) continue;
+      place_of_.push_back(v);
+      positions.push_back(reference_.positions[v]);
+    }
+    places_.emplace(positions);
+    used_.assign(in_face.size(), 0);
+    for (const Index source : result_.source_vertex) used_[source] = 1;
+  }
+
+  // The least, over the faces around v, of the largest cosine with a neighbour.
+  [[nodiscard]] double fold_after(const EdgeUses& edges, Index v, const Move& move) {
+    std::vector<Vec3>& positions = result_.mesh.positions;
+    const Vec3 before = std::exchange(positions[v], move.place);
+    double worst = 1.0;
+    for (const Index f : star(v)) {
+      const Triangle& t = result_.mesh.triangles[f];
+      const Vec3 normal = normal_of(positions, t);
+      double best = -1.0;
+      for (std::size_t k = 0; k < 3; ++k) {
+        for (const EdgeUse& use : edges.faces_at(t[k], t[(k + 1) % 3])) {
+          if (use.face != f) best = std::max(best, normal.dot(normal_of(positions, result_.mesh.triangles[use.face])));
+        }
+      }
+      worst = std::min(worst, normal.isZero() ? -1.0 : best);
+    }
+    positions[v] = before;
+    return worst;
+  }
+
+  const TriangleMesh& reference_;
+  SimplifiedMesh& result_;
+  Placement placement_;
+  std::optional<KdTree> places_;
+  std::vector<Index> place_of_;      // point of the tree -> input vertex
+  std::vector<std::uint8_t> used_;   // per input vertex
+};
 
 }  // namespace
 
@@ -156,6 +251,7 @@ std::size_t unfold_faces(const TriangleMesh& reference, SimplifiedMesh& result, 
   for (const auto& [a, b] : features) is_feature[a] = is_feature[b] = 1;
   const auto is_fixed = [&](Index v) { return !is_feature.empty() && is_feature[result.source_vertex[v]] != 0; };
   TriangleMesh& mesh = result.mesh;
+  Relocation relocation(reference, result, placement);
   for (int pass = 0;; ++pass) {
     const EdgeUses edges(mesh);
     const std::vector<Index> turned = turned_faces(reference, mesh, edges, context);
@@ -169,10 +265,9 @@ std::size_t unfold_faces(const TriangleMesh& reference, SimplifiedMesh& result, 
         for (const Index v : quad) touched[v] = 1;
         mesh.triangles[flip->f] = flip->new_f;
         mesh.triangles[flip->g] = flip->new_g;
-      } else if (placement == Placement::Optimal) {
-        for (const Index v : corners) {
-          if (!is_fixed(v)) pull_into_ring(mesh, edges, f, v);
-        }
+      } else if (std::none_of(corners.begin(), corners.end(), [&](Index v) { return touched[v] != 0; })) {
+        for (const Index v : corners) touched[v] = 1;
+        relocation.relocate(edges, corners, is_fixed);
       }
     }
   }

@@ -15,9 +15,10 @@ namespace shapelight {
 [[nodiscard]] std::vector<Index> turned_faces(const TriangleMesh& reference, const TriangleMesh& mesh,
                                               const EdgeUses& edges, const RunContext& context);
 
-/// Flips edges of turned faces so that both new faces look where those around them do. Vertices stay, but with
-/// Placement::Optimal one of three faces, which allows no flip, moves into the middle of its neighbours. Edges between
-/// two vertices of `features` stay. Returns how many faces are turned still. Cost: O(n) and little more.
+/// Repairs turned faces: flips one of their edges so that both new faces look where those around them do or, where no
+/// flip does, moves a corner towards the middle of its neighbours (Placement::Input: to an input vertex near there).
+/// Vertices of `features` stay, and edges between two of them. Returns how many faces are turned still.
+/// Cost: O(n), and as much again per corner moved.
 std::size_t unfold_faces(const TriangleMesh& reference, SimplifiedMesh& result, Placement placement,
                          const FeatureEdges& features, const RunContext& context);
 
