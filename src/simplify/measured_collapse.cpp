@@ -23,6 +23,7 @@ struct Removal {
 
 struct Scratch {
   SampleBlock block;
+  StarShape shape;
   std::vector<Index> ids, ring, kept;
 };
 
@@ -30,7 +31,8 @@ struct Scratch {
 class RemovalTrial {
  public:
   RemovalTrial(const MeasuredMesh& measured, Index u, Scratch& scratch)
-      : measured_(measured), u_(u), scratch_(scratch), worst_(worst_quality(measured.mesh, u)) {
+      : measured_(measured), u_(u), scratch_(scratch) {
+    scratch.shape.measure(measured.mesh, u);
     energy_before_ = measured.gather(measured.mesh.star(u), measured.mesh.position[u], scratch.block, scratch.ids);
   }
 
@@ -40,15 +42,15 @@ class RemovalTrial {
     const Vec3& origin = mesh.position[u_];
     scratch_.kept.clear();
     scratch_.block.reset();
-    for (const Index f : mesh.star(u_)) {
+    const std::span<const Index> star = mesh.star(u_);
+    for (std::size_t i = 0; i < star.size(); ++i) {
+      const Index f = star[i];
       const Triangle& t = mesh.face(f);
       if (t[0] == v || t[1] == v || t[2] == v) continue;
       const LocalTriangle after = triangle_with(mesh, f, u_, mesh.position[v], origin);
-      if (!keeps_shape(triangle_with(mesh, f, u_, origin, origin), after, worst_, kLimits)) {
-        return std::numeric_limits<double>::infinity();
-      }
       const auto source = [&](int k) { return mesh.source[t[k] == u_ ? v : t[k]]; };
-      if (!measured_.agrees_with_input(after.normal, source(0), source(1), source(2))) {
+      if (!scratch_.shape.keeps(i, after, kLimits) ||
+          !measured_.agrees_with_input(after.normal, source(0), source(1), source(2))) {
         return std::numeric_limits<double>::infinity();
       }
       scratch_.block.offer(after, static_cast<std::int32_t>(scratch_.kept.size()));
@@ -77,7 +79,6 @@ class RemovalTrial {
   const MeasuredMesh& measured_;
   Index u_;
   Scratch& scratch_;
-  double worst_;
   double energy_before_ = 0.0;
 };
 

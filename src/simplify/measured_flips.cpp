@@ -37,7 +37,8 @@ double gain_of(const MeasuredMesh& measured, Index f, Index g, Scratch& scratch)
   const LocalTriangle new_f = triangle(2, 3, 1), new_g = triangle(3, 2, 0);
   const double worst = std::min(old_f.quality(), old_g.quality());
   for (const LocalTriangle* after : {&new_f, &new_g}) {
-    if (!keeps_shape(old_f, *after, worst, kLimits) || !keeps_shape(old_g, *after, worst, kLimits)) return 0.0;
+    if (!StarShape::keeps_shape(old_f.normal, *after, worst, kLimits)) return 0.0;
+    if (!StarShape::keeps_shape(old_g.normal, *after, worst, kLimits)) return 0.0;
   }
   const auto agrees = [&](const LocalTriangle& t, int i, int j, int k) {
     const auto& source = mesh.source;

@@ -255,8 +255,10 @@ void MeasuredMesh::merge_line(Index gone, Index kept) {
 
 bool MeasuredMesh::agrees_with_input(const Vec3& normal, Index a, Index b, Index c) const {
   const Vec3 sum = input_normal_[a] + input_normal_[b] + input_normal_[c];
-  const double length = sum.norm();
-  return length < kCreaseLength || normal.dot(sum) > kMinAgreement * length;
+  const double length_sq = sum.squaredNorm();
+  if (length_sq < kCreaseLength * kCreaseLength) return true;
+  const double along = normal.dot(sum);
+  return along > 0.0 && along * along > kMinAgreement * kMinAgreement * length_sq;
 }
 
 }  // namespace shapelight::simplify

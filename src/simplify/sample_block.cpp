@@ -14,19 +14,22 @@ constexpr std::size_t kLanes = 8;
 // The triangle in floats, relative to its first corner. Edge k: signed distance m.p - m0, coordinate along it d.p - d0.
 struct PackedTriangle {
   explicit PackedTriangle(const LocalTriangle& t) {
+    float corner[3][3];
     for (int j = 0; j < 3; ++j) {
       origin[j] = static_cast<float>(t.corner[0][j]);
       n[j] = static_cast<float>(t.normal[j]);
+      for (int k = 0; k < 3; ++k) corner[k][j] = static_cast<float>(t.corner[k][j] - t.corner[0][j]);
     }
     for (int k = 0; k < 3; ++k) {
-      const Vec3 from = t.corner[k] - t.corner[0];
-      for (int j = 0; j < 3; ++j) {
-        m[k][j] = static_cast<float>(t.outward[k][j]);
-        d[k][j] = static_cast<float>(t.direction[k][j]);
-      }
-      m0[k] = static_cast<float>(t.outward[k].dot(from));
-      d0[k] = static_cast<float>(t.direction[k].dot(from));
-      length[k] = static_cast<float>(t.length[k]);
+      const float* from = corner[k];
+      const float* to = corner[(k + 1) % 3];
+      const float e[3] = {to[0] - from[0], to[1] - from[1], to[2] - from[2]};
+      length[k] = std::sqrt(e[0] * e[0] + e[1] * e[1] + e[2] * e[2]);
+      const float inverse = length[k] > 0.0F ? 1.0F / length[k] : 0.0F;
+      for (int j = 0; j < 3; ++j) d[k][j] = e[j] * inverse;
+      for (int j = 0; j < 3; ++j) m[k][j] = d[k][(j + 1) % 3] * n[(j + 2) % 3] - d[k][(j + 2) % 3] * n[(j + 1) % 3];
+      m0[k] = m[k][0] * from[0] + m[k][1] * from[1] + m[k][2] * from[2];
+      d0[k] = d[k][0] * from[0] + d[k][1] * from[1] + d[k][2] * from[2];
     }
   }
   float origin[3], n[3], m[3][3], d[3][3], m0[3], d0[3], length[3];
@@ -74,20 +77,11 @@ SHAPELIGHT_VECTORIZE void offer_packed(const PackedTriangle& triangle, std::int3
 }  // namespace
 
 LocalTriangle::LocalTriangle(const Vec3& a, const Vec3& b, const Vec3& c) : corner{a, b, c} {
-  const Vec3 cross = (b - a).cross(c - a);
+  const Vec3 u = b - a, v = c - a;
+  const Vec3 cross = u.cross(v);
   double_area = cross.norm();
+  longest_sq = std::max({u.squaredNorm(), v.squaredNorm(), (c - b).squaredNorm()});
   normal = double_area > 0.0 ? Vec3(cross / double_area) : Vec3::Zero();
-  for (int k = 0; k < 3; ++k) {
-    const Vec3 edge = corner[(k + 1) % 3] - corner[k];
-    length[k] = edge.norm();
-    direction[k] = length[k] > 0.0 ? Vec3(edge / length[k]) : Vec3::Zero();
-    outward[k] = direction[k].cross(normal);
-  }
-}
-
-double LocalTriangle::quality() const {
-  const double longest = std::max({length[0], length[1], length[2]});
-  return longest > 0.0 ? double_area / (longest * longest) : 0.0;
 }
 
 void SampleBlock::resize(std::size_t count) {

@@ -8,19 +8,16 @@
 
 namespace shapelight::simplify {
 
-/// A triangle in a local frame, in the form that many distances to it want.
+/// A triangle in a local frame: corners relative to the frame's origin.
 struct LocalTriangle {
-  /// Corners relative to the frame's origin. The normal is zero when the triangle has no area.
   LocalTriangle(const Vec3& a, const Vec3& b, const Vec3& c);
 
   Vec3 corner[3];
-  Vec3 normal;        ///< unit
-  Vec3 direction[3];  ///< unit, of edge k from corner k on
-  Vec3 outward[3];    ///< unit, in the plane, away from the triangle across edge k
-  double length[3];   ///< of edge k
+  Vec3 normal;  ///< unit; zero when the triangle has no area
   double double_area;
+  double longest_sq;  ///< longest edge, squared
   /// 2 area / longest edge squared: 0.87 for the equilateral one, 0 for a needle.
-  [[nodiscard]] double quality() const;
+  [[nodiscard]] double quality() const { return longest_sq > 0.0 ? double_area / longest_sq : 0.0; }
 };
 
 /// Surface samples near one place, in a local frame, laid out for vector units, each with its best triangle so far.

@@ -11,6 +11,7 @@
 #include "shapelight/data/geometry.hpp"
 #include "simplify/measured_collapse.hpp"
 #include "simplify/measured_flips.hpp"
+#include "simplify/morton_order.hpp"
 #include "simplify/quadric_collapse.hpp"
 #include "simplify/vertex_fit.hpp"
 #include "simplify/vertex_moves.hpp"
@@ -42,6 +43,32 @@ struct WorkFrame {
   [[nodiscard]] Vec3 from(const Vec3& p) const { return unit * p + center; }
 };
 
+// The mesh with its vertices, and faces by their first vertex, along a Morton curve: what is near is near in memory.
+ManifoldMesh along_morton_curve(const ManifoldMesh& mesh, const RunContext& context) {
+  const BoundingBox box = bounding_box(mesh.mesh.positions);
+  const double side = (box.max - box.min).maxCoeff();
+  const std::vector<Index> order = morton_order(mesh.mesh.positions, box.min, side > 0.0 ? 1.0 / side : 0.0, context);
+  std::vector<Index> place(order.size());
+  ManifoldMesh sorted;
+  for (Index i = 0; i < order.size(); ++i) {
+    const Index v = order[i];
+    place[v] = i;
+    sorted.mesh.positions.push_back(mesh.mesh.positions[v]);
+    sorted.source.push_back(mesh.source[v]);
+    sorted.locked.push_back(mesh.locked[v]);
+    sorted.line.push_back(mesh.line[v]);
+  }
+  const auto renumber = [&](Index& v) { v = v == kNoIndex ? kNoIndex : place[v]; };
+  for (std::array<Index, 2>& ends : sorted.line) std::for_each(ends.begin(), ends.end(), renumber);
+  sorted.mesh.triangles = mesh.mesh.triangles;
+  for (Triangle& t : sorted.mesh.triangles) std::for_each(t.begin(), t.end(), renumber);
+  std::stable_sort(sorted.mesh.triangles.begin(), sorted.mesh.triangles.end(),
+                   [](const Triangle& a, const Triangle& b) {
+                     return *std::min_element(a.begin(), a.end()) < *std::min_element(b.begin(), b.end());
+                   });
+  return sorted;
+}
+
 // The work of one run of SSim: the input, made manifold, in the work frame; its vertices number everything.
 class Ssim {
  public:
@@ -51,7 +78,8 @@ class Ssim {
         guide_(guide),
         options_(options),
         context_(context),
-        input_(make_manifold(mesh, features, context.phase(0.0, 0.05, "prepare"), oddities)),
+        input_(
+            along_morton_curve(make_manifold(mesh, features, context.phase(0.0, 0.05, "prepare"), oddities), context)),
         input_source_(input_.source) {
     target_ = target;
     if (target.vertices > 0) target_.vertices += input_.source.size() - num_merged_vertices(input_);

@@ -10,18 +10,21 @@ LocalTriangle triangle_with(const LiveMesh& mesh, Index face, Index v, const Vec
   return {corner(0), corner(1), corner(2)};
 }
 
-bool keeps_shape(const LocalTriangle& before, const LocalTriangle& after, double worst_before,
-                 const ShapeLimits& limits) {
+bool StarShape::keeps_shape(const Vec3& before, const LocalTriangle& after, double worst, const ShapeLimits& limits) {
   if (after.double_area <= 0.0) return false;
-  if (before.double_area > 0.0 && before.normal.dot(after.normal) < limits.min_cosine) return false;
-  return after.quality() >= std::min(limits.min_quality, worst_before);
+  if (before != Vec3::Zero() && before.dot(after.normal) < limits.min_cosine) return false;
+  return after.quality() >= std::min(limits.min_quality, worst);
 }
 
-double worst_quality(const LiveMesh& mesh, Index v) {
-  double worst = 1.0;
+void StarShape::measure(const LiveMesh& mesh, Index v) {
+  normal.clear();
+  worst_quality = 1.0;
   const Vec3& p = mesh.position[v];
-  for (const Index f : mesh.star(v)) worst = std::min(worst, triangle_with(mesh, f, v, p, p).quality());
-  return worst;
+  for (const Index f : mesh.star(v)) {
+    const LocalTriangle t = triangle_with(mesh, f, v, p, p);
+    normal.push_back(t.normal);
+    worst_quality = std::min(worst_quality, t.quality());
+  }
 }
 
 std::vector<std::vector<Index>> independent_classes(const LiveMesh& mesh, std::span<const Index> vertices) {

@@ -15,13 +15,20 @@ struct ShapeLimits {
   double min_quality = 0.01;
 };
 
-/// Does a face keep its side and shape when `before` becomes `after`? `worst_before`: least quality of the faces at
-/// hand.
-[[nodiscard]] bool keeps_shape(const LocalTriangle& before, const LocalTriangle& after, double worst_before,
-                               const ShapeLimits& limits);
+/// What the faces around a vertex look like before they change.
+struct StarShape {
+  std::vector<Vec3> normal;  ///< per face of the star; zero where it has no area
+  double worst_quality = 1.0;
 
-/// Least quality of the faces around v.
-[[nodiscard]] double worst_quality(const LiveMesh& mesh, Index v);
+  void measure(const LiveMesh& mesh, Index v);
+  /// Does the i-th face keep its side and shape when it becomes `after`?
+  [[nodiscard]] bool keeps(std::size_t i, const LocalTriangle& after, const ShapeLimits& limits) const {
+    return keeps_shape(normal[i], after, worst_quality, limits);
+  }
+  /// `before` is the normal of a face; `worst`: the least quality of the faces at hand.
+  [[nodiscard]] static bool keeps_shape(const Vec3& before, const LocalTriangle& after, double worst,
+                                        const ShapeLimits& limits);
+};
 
 /// Splits vertices into classes of which no two members are neighbours: those of a class can be worked on at once.
 /// Greedy in the order given; classes keep that order.

@@ -18,17 +18,18 @@ constexpr double kMinGain = 1e-7;
 constexpr ShapeLimits kLimits{.min_cosine = 0.5, .min_quality = 0.02};
 constexpr std::size_t kChunk = 64;
 
-struct Projection {
-  Vec3 point;
-  bool is_inside = false;
+// The planes on the edges of a triangle, upright, looking inwards.
+struct InsideTest {
+  explicit InsideTest(const LocalTriangle& t) : triangle(t) {
+    for (int k = 0; k < 3; ++k) inward[k] = t.normal.cross(t.corner[(k + 1) % 3] - t.corner[k]);
+  }
+  [[nodiscard]] bool holds(const Vec3& x) const {
+    return inward[0].dot(x - triangle.corner[0]) >= 0.0 && inward[1].dot(x - triangle.corner[1]) >= 0.0 &&
+           inward[2].dot(x - triangle.corner[2]) >= 0.0;
+  }
+  const LocalTriangle& triangle;
+  Vec3 inward[3];
 };
-
-Projection project(const Vec3& x, const LocalTriangle& t) {
-  bool outside = false;
-  for (int k = 0; k < 3; ++k) outside = outside || t.outward[k].dot(x - t.corner[k]) > 0.0;
-  if (!outside) return {x - t.normal.dot(x - t.corner[0]) * t.normal, true};
-  return {closest_point_on_triangle(x, t.corner[0], t.corner[1], t.corner[2]), false};
-}
 
 void add_face(const MeasuredMesh& measured, Index f, Index v, double normal_weight, FitModel& model) {
   const LiveMesh& mesh = measured.mesh;
@@ -42,12 +43,15 @@ void add_face(const MeasuredMesh& measured, Index f, Index v, double normal_weig
   inside_part.diagonal().array() += kTangential;
   double inside = 0.0, clamped = 0.0, turning = 0.0;
   Vec3 normals = Vec3::Zero();
+  const InsideTest test(t);
   measured.for_samples(f, [&](const SurfaceSample& s) {
     const Vec3 x = s.position - origin;
-    const Projection q = project(x, t);
-    const double hat = std::max(0.0, 1.0 + gradient.dot(q.point));
-    model.g += s.weight * hat * (x - q.point);
-    (q.is_inside ? inside : clamped) += s.weight * hat * hat;
+    const bool is_inside = test.holds(x);
+    const Vec3 q = is_inside ? Vec3(x - t.normal.dot(x - t.corner[0]) * t.normal)
+                             : closest_point_on_triangle(x, t.corner[0], t.corner[1], t.corner[2]);
+    const double hat = std::max(0.0, 1.0 + gradient.dot(q));
+    model.g += s.weight * hat * (x - q);
+    (is_inside ? inside : clamped) += s.weight * hat * hat;
     model.weight += s.weight;
     if (s.turn > 0.0F) {
       turning += s.weight;
@@ -98,7 +102,7 @@ void fit(MeasuredMesh& measured, Index v, double normal_weight, InputSurface& in
   FitModel model = fit_model(measured, v, normal_weight);
   if (!(model.weight > 0.0)) return;
   const Backward backward{kBackward * model.weight / 3.0};
-  const TriangleTree::Hit hit = input.closest(p, v);
+  const TriangleTree::Hit hit = input.closest(p, v);  // a copy: the next search replaces it
   const Vec3 n = input.normal(hit.triangle);
   model.A += backward.weight * n * n.transpose();
   model.g += backward.weight * (hit.point - p);
@@ -144,7 +148,7 @@ void StarTrial::begin(const MeasuredMesh& measured, Index v) {
   if (mesh.is_on_line(v)) {
     for (const Index e : mesh.line_edges(v)) energy_now_ += measured.line_energy(e);
   }
-  worst_ = worst_quality(mesh, v);
+  shape_.measure(mesh, v);
 }
 
 double StarTrial::energy_at(const Vec3& place, Index source) {
@@ -155,9 +159,7 @@ double StarTrial::energy_at(const Vec3& place, Index source) {
   std::int32_t id = 0;
   for (const Index f : mesh.star(v_)) {
     const LocalTriangle after = triangle_with(mesh, f, v_, place, origin);
-    if (!keeps_shape(triangle_with(mesh, f, v_, origin, origin), after, worst_, kLimits)) {
-      return std::numeric_limits<double>::infinity();
-    }
+    if (!shape_.keeps(static_cast<std::size_t>(id), after, kLimits)) return std::numeric_limits<double>::infinity();
     if (source != kNoIndex) {
       const Triangle& t = mesh.face(f);
       const auto corner = [&](int k) { return t[k] == v_ ? source : mesh.source[t[k]]; };
@@ -193,10 +195,10 @@ void StarTrial::accept(MeasuredMesh& measured) const {
   }
 }
 
-TriangleTree::Hit InputSurface::closest(const Vec3& p, Index v) {
-  const TriangleTree::Hit hit = tree_.closest(p, hint_[v]);
-  hint_[v] = hit.triangle;
-  return hit;
+const TriangleTree::Hit& InputSurface::closest(const Vec3& p, Index v) {
+  Search& last = last_[v];
+  if (last.from != p) last = {p, tree_.closest(p, last.hit.triangle)};
+  return last.hit;
 }
 
 Vec3 InputSurface::normal(Index face) const {
@@ -206,7 +208,7 @@ Vec3 InputSurface::normal(Index face) const {
 }
 
 double InputSurface::error_of_removal(const LiveMesh& mesh, Index u, Index v) const {
-  Index hint = hint_[u];
+  Index hint = last_[u].hit.triangle;
   const auto distance_sq = [&](const Vec3& p) {
     const TriangleTree::Hit hit = tree_.closest(p, hint);
     hint = hit.triangle;

@@ -1,11 +1,13 @@
 #pragma once
 
+#include <limits>
 #include <span>
 #include <vector>
 
 #include "shapelight/core/run_context.hpp"
 #include "shapelight/spatial/triangle_tree.hpp"
 #include "simplify/measured_mesh.hpp"
+#include "simplify/star_shape.hpp"
 
 namespace shapelight::simplify {
 
@@ -40,8 +42,8 @@ class StarTrial {
   const MeasuredMesh* measured_ = nullptr;
   Index v_ = kNoIndex;
   double energy_now_ = 0.0;
-  double worst_ = 0.0;
   Vec3 place_ = Vec3::Zero();
+  StarShape shape_;
   SampleBlock block_;
   std::vector<Index> ids_;
 };
@@ -50,15 +52,20 @@ class StarTrial {
 class InputSurface {
  public:
   InputSurface(const TriangleMesh& surface, std::size_t num_vertices, const RunContext& context)
-      : tree_(surface, context), hint_(num_vertices, kNoIndex), surface_(surface) {}
-  [[nodiscard]] TriangleTree::Hit closest(const Vec3& p, Index v);
+      : tree_(surface, context), last_(num_vertices), surface_(surface) {}
+  /// Closest point to `p`, a place for vertex v. Safe for different vertices at once.
+  [[nodiscard]] const TriangleTree::Hit& closest(const Vec3& p, Index v);
   /// Area times mean squared distance from the input of the faces that removing u into v would leave.
   [[nodiscard]] double error_of_removal(const LiveMesh& mesh, Index u, Index v) const;
   [[nodiscard]] Vec3 normal(Index face) const;
 
  private:
   TriangleTree tree_;
-  std::vector<Index> hint_;  // per vertex: where the last search ended
+  struct Search {
+    Vec3 from = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
+    TriangleTree::Hit hit;
+  };
+  std::vector<Search> last_;  ///< per vertex: a start for the next one, and often its answer
   const TriangleMesh& surface_;
 };
 
