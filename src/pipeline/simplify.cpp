@@ -279,6 +279,7 @@ SimplifyOptions simplify_preset(SimplifyPreset preset, Placement placement) {
       options.ssim.sweeps = 8;
       break;
     case SimplifyPreset::Detail:
+      if (optimal) options.ssim.pre_collapse = 2.0;  // fitted vertices make good for what quadrics miss
       break;
   }
   return options;

@@ -134,12 +134,20 @@ class Ssim {
     const bool is_needed = coarse.vertices > 0 ? coarse.vertices < input_.mesh.positions.size()
                                                : coarse.faces < input_.mesh.triangles.size();
     if (!is_needed) return input_;
-    return collapse_quadrics(ManifoldMesh(input_), coarse,
-                             {.placement = options_.placement,
-                              .boundary_weight = kQuadricBoundary * options_.boundary_weight,
-                              .removal_weight = removal_weight,
-                              .must_reach = options_.pre_collapse == 1.0},
-                             context_.phase(0.05, 0.2, "collapse by quadrics"));
+    ManifoldMesh surface_mesh = input_;  // quadrics would follow the noise
+    surface_mesh.mesh.positions.assign(surface().begin(), surface().end());
+    ManifoldMesh collapsed = collapse_quadrics(std::move(surface_mesh), coarse,
+                                               {.placement = options_.placement,
+                                                .boundary_weight = kQuadricBoundary * options_.boundary_weight,
+                                                .removal_weight = removal_weight,
+                                                .must_reach = options_.pre_collapse == 1.0},
+                                               context_.phase(0.05, 0.2, "collapse by quadrics"));
+    if (options_.placement == Placement::Input) {
+      for (std::size_t v = 0; v < collapsed.source.size(); ++v) {
+        collapsed.mesh.positions[v] = input_.mesh.positions[collapsed.source[v]];
+      }
+    }
+    return collapsed;
   }
 
   void collapse(MeasuredMesh& measured, std::optional<InputSurface>& original, std::span<const float> removal_weight) {

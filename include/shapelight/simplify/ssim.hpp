@@ -13,7 +13,7 @@ struct SsimOptions {
   double sample_weight = 1.5;    ///< [1] factor on the cost of removing a sample
   double boundary_weight = 1.0;  ///< [1] of border error against surface error
   double normal_weight = 0.1;    ///< [1] lambda: error of normals in units of the output's edge length
-  double pre_collapse = 2.0;     ///< [1] the quadrics collapse to this multiple of the target, the measured error on;
+  double pre_collapse = 3.0;     ///< [1] the quadrics collapse to this multiple of the target, the measured error on;
                                  ///<     1: no measured collapse
   std::uint32_t sweeps = 4;      ///< [rounds] of flips and vertex moves at the end
 
