@@ -97,7 +97,8 @@ void say_result(const Run& run, const std::string& output, const SimplifyResult&
                 const SimplifyOptions& options) {
   const double share = 100.0 * static_cast<double>(result.geometry.size()) / static_cast<double>(result.vertices_in);
   if (result.sampled) {
-    run.say(fmt::format("{}: {} of {} points kept ({:.3g} %)", output, result.geometry.size(), result.vertices_in, share));
+    run.say(
+        fmt::format("{}: {} of {} points kept ({:.3g} %)", output, result.geometry.size(), result.vertices_in, share));
   } else {
     run.say(fmt::format("{}: {} of {} vertices ({:.3g} %), {} of {} faces, method {}, placement {}", output,
                         result.geometry.size(), result.vertices_in, share, result.geometry.triangles.size(),

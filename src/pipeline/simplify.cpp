@@ -32,7 +32,8 @@ class Simplifier {
     reference_ = without_oddities(surface_.mesh, oddities_, prepare);
     if (reference_.mesh.triangles.empty()) throw InvalidInput("the input has no usable face to simplify");
     features_ = pipeline::texture_seams(geometry, surface_);
-    if (options.method != SimplifyMethod::Qslim) guide_.emplace(geometry, surface_, options, context.phase(0.3, 1.0, ""));
+    if (options.method != SimplifyMethod::Qslim)
+      guide_.emplace(geometry, surface_, options, context.phase(0.3, 1.0, ""));
   }
 
   [[nodiscard]] std::size_t vertices() const { return reference_.mesh.positions.size(); }
@@ -44,7 +45,8 @@ class Simplifier {
   [[nodiscard]] SimplifiedMesh run(const SimplifyTarget& target, const RunContext& context) const {
     return run(options_.method, target, context);
   }
-  [[nodiscard]] SimplifiedMesh run(SimplifyMethod method, const SimplifyTarget& target, const RunContext& context) const {
+  [[nodiscard]] SimplifiedMesh run(SimplifyMethod method, const SimplifyTarget& target,
+                                   const RunContext& context) const {
     if (target.vertices > vertices()) throw unreachable("vertices", target.vertices, vertices());
     if (target.faces > faces()) throw unreachable("faces", target.faces, faces());
     SimplifiedMesh result = simplified(method, target, context.phase(0.0, 0.95, "collapse"));
@@ -68,7 +70,8 @@ class Simplifier {
     const std::size_t count = target.vertices > 0 ? target.vertices : target.faces * vertices() / faces();
     const std::vector<Index> samples = guide_->samples(count, context.phase(0.0, 0.1, "choose samples"));
     const RunContext rest = context.phase(0.1, 1.0, "collapse");
-    if (method == SimplifyMethod::SsimPaper) return simplify_ssim_paper(surface_.mesh, target, samples, features_, rest);
+    if (method == SimplifyMethod::SsimPaper)
+      return simplify_ssim_paper(surface_.mesh, target, samples, features_, rest);
     return simplify_ssim(surface_.mesh, target, {samples, guide_->denoised()}, ssim, features_, rest);
   }
 
@@ -86,8 +89,8 @@ std::size_t share_of(double ratio, std::size_t count) {
 }
 
 std::size_t num_finite(const Geometry& geometry) {
-  return static_cast<std::size_t>(std::count_if(geometry.positions.begin(), geometry.positions.end(),
-                                                [](const Vec3& p) { return p.allFinite(); }));
+  return static_cast<std::size_t>(
+      std::count_if(geometry.positions.begin(), geometry.positions.end(), [](const Vec3& p) { return p.allFinite(); }));
 }
 
 SimplifyTarget target_of(const SimplifySize& size, const Simplifier& simplifier, SimplifyResult& result) {
@@ -118,8 +121,8 @@ SimplifiedMesh search_by_error(const Simplifier& simplifier, double bound, Simpl
   search.guess = first;
   try {  // quadrics are cheap and tell the order of magnitude
     const RunContext part = slot(0);
-    const SimplifiedMesh rough = simplifier.run(SimplifyMethod::Qslim, {.vertices = first, .faces = 0},
-                                                part.phase(0.0, 0.7, "collapse"));
+    const SimplifiedMesh rough =
+        simplifier.run(SimplifyMethod::Qslim, {.vertices = first, .faces = 0}, part.phase(0.0, 0.7, "collapse"));
     const double error = measure(simplifier, rough, part.phase(0.7, 1.0, "measure")).symmetric.max;
     search.guess = static_cast<std::size_t>(static_cast<double>(first) * std::clamp(error / bound, 0.01, 10.0));
   } catch (const TargetUnreachable&) {
@@ -181,10 +184,11 @@ void warn_of_noise(const SimplifyOptions& options, const std::optional<ShapeGuid
   result.noise = guide->noise();
   result.denoised = !guide->denoised().empty();
   if (!result.denoised) return;
-  result.warnings.push_back(fmt::format(
-      "noise of {:.3g} ({:.2g} mean edge lengths): the error is measured against a denoised surface{}", guide->noise(),
-      guide->noise() / guide->mean_edge_length(),
-      options.ssim.placement == Placement::Optimal ? ", and the vertices lie on it" : "; the vertices are the input's"));
+  result.warnings.push_back(
+      fmt::format("noise of {:.3g} ({:.2g} mean edge lengths): the error is measured against a denoised surface{}",
+                  guide->noise(), guide->noise() / guide->mean_edge_length(),
+                  options.ssim.placement == Placement::Optimal ? ", and the vertices lie on it"
+                                                               : "; the vertices are the input's"));
 }
 
 SimplifyResult simplify_surface(const Geometry& geometry, const SimplifySize& size, const SimplifyOptions& options,
@@ -198,9 +202,8 @@ SimplifyResult simplify_surface(const Geometry& geometry, const SimplifySize& si
   warn_of_oddities(simplifier, geometry.size() - result.vertices_in, result);
   warn_of_noise(options, simplifier.guide(), result);
   const RunContext work = context.phase(0.3, 0.9, "collapse");
-  SimplifiedMesh simplified = size.max_error
-                                  ? search_by_error(simplifier, *size.max_error, result, work)
-                                  : simplifier.run(target_of(size, simplifier, result), work);
+  SimplifiedMesh simplified = size.max_error ? search_by_error(simplifier, *size.max_error, result, work)
+                                             : simplifier.run(target_of(size, simplifier, result), work);
   if (options.measure && !result.measured) {
     result.measured = measure(simplifier, simplified, context.phase(0.9, 0.95, "measure"));
   }
@@ -212,14 +215,16 @@ SimplifyResult simplify_surface(const Geometry& geometry, const SimplifySize& si
 
 void refuse_on_cloud(const SimplifySize& size, const SimplifyOptions& options) {
   const auto refuse = [](std::string_view what, std::string_view why) {
-    throw InvalidInput(fmt::format("{}: the input is a point cloud, which {}; expected --vertices or --ratio, for "
-                                   "which its points are sampled",
-                                   what, why));
+    throw InvalidInput(
+        fmt::format("{}: the input is a point cloud, which {}; expected --vertices or --ratio, for "
+                    "which its points are sampled",
+                    what, why));
   };
   if (size.faces) refuse("--faces", "has no faces");
   if (size.max_error) refuse("--max-error", "has no surface to measure the error on");
   if (options.measure) refuse("--measure", "has no surface to measure the error on");
-  if (options.ssim.placement == Placement::Optimal) refuse("--placement optimal", "has no surface to place vertices on");
+  if (options.ssim.placement == Placement::Optimal)
+    refuse("--placement optimal", "has no surface to place vertices on");
   if (options.method == SimplifyMethod::Qslim) refuse("--method qslim", "has no edges to collapse");
 }
 
@@ -230,7 +235,8 @@ SimplifyResult sample_cloud(const Geometry& geometry, const SimplifySize& size, 
   SampleOptions sampling = sample_preset(paper ? Preset::Paper : Preset::Detail);
   sampling.local_weight = options.local_weight;
   sampling.fields = options.fields;
-  SampleResult sampled = sample(geometry, {.count = size.vertices, .ratio = size.ratio, .spacing = {}}, sampling, context);
+  SampleResult sampled =
+      sample(geometry, {.count = size.vertices, .ratio = size.ratio, .spacing = {}}, sampling, context);
   std::sort(sampled.indices.begin(), sampled.indices.end());
   SimplifyResult result;
   result.geometry = select_points(geometry, sampled.indices);
@@ -238,7 +244,8 @@ SimplifyResult sample_cloud(const Geometry& geometry, const SimplifySize& size, 
   result.sampled = true;
   result.vertices_in = sampled.usable;
   result.noise = sampled.noise;
-  result.warnings.emplace_back("the input is a point cloud without faces: its points were sampled, and no mesh was made");
+  result.warnings.emplace_back(
+      "the input is a point cloud without faces: its points were sampled, and no mesh was made");
   return result;
 }
 

@@ -49,9 +49,9 @@ std::vector<Index> ShapeGuide::samples(std::size_t count, const RunContext& cont
   std::vector<Index> chosen;
   if (paper_) {
     const std::vector<std::uint32_t> one_segment(fields_.segment.empty() ? graph_.size() : 0, 0);
-    chosen = sample_paper(graph_, candidates_, fields_.shape_index,
-                          fields_.segment.empty() ? one_segment : fields_.segment, target,
-                          {.local_weight = local_weight_}, context);
+    chosen =
+        sample_paper(graph_, candidates_, fields_.shape_index, fields_.segment.empty() ? one_segment : fields_.segment,
+                     target, {.local_weight = local_weight_}, context);
   } else {
     chosen = sample_by_shape(graph_, candidates_, fields_.importance, target, {.local_weight = local_weight_}, context);
   }

@@ -11,9 +11,9 @@
 namespace shapelight::pipeline {
 namespace {
 
-constexpr double kTinyShare = 1e-12;   // of the bound: stands in for an error of 0 on a logarithmic scale
-constexpr double kOvershoot = 1.3;     // steps go this much past the estimate, so that a bracket soon closes
-constexpr double kMargin = 0.15;       // share of the bracket that a secant keeps away from its ends
+constexpr double kTinyShare = 1e-12;  // of the bound: stands in for an error of 0 on a logarithmic scale
+constexpr double kOvershoot = 1.3;    // steps go this much past the estimate, so that a bracket soon closes
+constexpr double kMargin = 0.15;      // share of the bracket that a secant keeps away from its ends
 
 struct Tried {
   std::size_t count;
@@ -87,9 +87,10 @@ FoundCount find_count(double bound, const CountSearch& settings, const ErrorOfCo
   if (search.good()) return {search.good()->count, search.good()->error, tries};
   const double error = error_of(settings.most);
   if (error <= bound) return {settings.most, error, tries + 1};
-  throw TargetUnreachable(fmt::format("a distance of {:.6g} asked for, but {} vertices, all there are, come within {:.6g}",
-                                      bound, settings.most, error),
-                          settings.most);
+  throw TargetUnreachable(
+      fmt::format("a distance of {:.6g} asked for, but {} vertices, all there are, come within {:.6g}", bound,
+                  settings.most, error),
+      settings.most);
 }
 
 }  // namespace shapelight::pipeline

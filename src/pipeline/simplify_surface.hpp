@@ -11,9 +11,9 @@ namespace shapelight::pipeline {
 
 /// What of a geometry is simplified: its triangles, in coordinates relative to the centre of its box.
 struct Surface {
-  TriangleMesh mesh;               ///< one vertex per point of the geometry
-  std::vector<Index> triangle_of;  ///< per triangle: the geometry's; empty when they are the same
-  Vec3 origin = Vec3::Zero();      ///< input frame
+  TriangleMesh mesh;                  ///< one vertex per point of the geometry
+  std::vector<Index> triangle_of;     ///< per triangle: the geometry's; empty when they are the same
+  Vec3 origin = Vec3::Zero();         ///< input frame
   std::size_t skipped_triangles = 0;  ///< left out: at points that are not finite
 };
 

@@ -39,8 +39,8 @@ Weights weights_at(const Vec3& point, const std::array<Vec3, 3>& corner) {
   }
   if (!(sum > 0.0)) {  // no area: between the two ends of its longest edge at best, and any corner will do
     const auto distance = [&](std::size_t k) { return (corner[k] - point).squaredNorm(); };
-    const std::size_t nearest = distance(0) <= distance(1) ? (distance(0) <= distance(2) ? 0 : 2)
-                                                           : (distance(1) <= distance(2) ? 1 : 2);
+    const std::size_t nearest =
+        distance(0) <= distance(1) ? (distance(0) <= distance(2) ? 0 : 2) : (distance(1) <= distance(2) ? 1 : 2);
     return Weights{nearest == 0 ? 1.0 : 0.0, nearest == 1 ? 1.0 : 0.0, nearest == 2 ? 1.0 : 0.0};
   }
   for (double& w : weights) w /= sum;
@@ -73,7 +73,8 @@ std::vector<T> interpolate(const std::vector<T>& values, std::span<const Place> 
     for (std::size_t i = begin; i < end; ++i) {
       double value = 0.0;
       for (std::size_t k = 0; k < 3; ++k) {
-        if (places[i].weights[k] > 0.0) value += places[i].weights[k] * static_cast<double>(values[places[i].corners[k]]);
+        if (places[i].weights[k] > 0.0)
+          value += places[i].weights[k] * static_cast<double>(values[places[i].corners[k]]);
       }
       if constexpr (std::is_integral_v<T>) value = std::round(value);
       result[i] = static_cast<T>(value);
@@ -100,7 +101,8 @@ void make_unit(AttributeTable& table) {
   }
 }
 
-AttributeTable interpolate_table(const AttributeTable& table, std::span<const Place> places, const RunContext& context) {
+AttributeTable interpolate_table(const AttributeTable& table, std::span<const Place> places,
+                                 const RunContext& context) {
   std::vector<Index> nearest(places.size());
   std::transform(places.begin(), places.end(), nearest.begin(), [](const Place& p) { return p.nearest_corner(); });
   AttributeTable result;
@@ -139,7 +141,9 @@ struct Atlas {
   Atlas(const Geometry& geometry, const Surface& surface);
 
  private:
-  void connect(Index face, Index neighbor) { *std::find(neighbors[face].begin(), neighbors[face].end(), kNoIndex) = neighbor; }
+  void connect(Index face, Index neighbor) {
+    *std::find(neighbors[face].begin(), neighbors[face].end(), kNoIndex) = neighbor;
+  }
 };
 
 Atlas::Atlas(const Geometry& geometry, const Surface& surface) {
@@ -254,8 +258,8 @@ std::array<Index, 3> faces_for_corners(const TriangleTree& tree, AtlasWalk& atla
   std::array<Index, 3> best{};
   int best_arrived = -1;
   Index hint = kNoIndex;
-  for (const Vec3& place : {center, Vec3(0.5 * (center + corner[0])), Vec3(0.5 * (center + corner[1])),
-                            Vec3(0.5 * (center + corner[2]))}) {
+  for (const Vec3& place :
+       {center, Vec3(0.5 * (center + corner[0])), Vec3(0.5 * (center + corner[1])), Vec3(0.5 * (center + corner[2]))}) {
     hint = tree.closest(place, hint).triangle;
     std::array<Index, 3> faces{};
     int arrived = 0;

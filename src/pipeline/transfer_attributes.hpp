@@ -13,7 +13,8 @@ namespace shapelight::pipeline {
 /// Gives `output` (whose triangles are those of `simplified`) the attributes of `input`.
 ///
 /// - Vertices, Placement::Input: those of the source vertex. Optimal: interpolated at the closest point of the surface:
-///   numbers linearly, integers rounded, normals made unit, labels (by name, and 64-bit integers) from the nearest corner.
+///   numbers linearly, integers rounded, normals made unit, labels (by name, and 64-bit integers) from the nearest
+///   corner.
 /// - Triangles: those of the input triangle closest to the centroid.
 /// - Texture coordinates: of the input face closest to the corner among those that are reached from below the output
 ///   face's centroid without crossing a seam, so that both sides of a seam keep their own.

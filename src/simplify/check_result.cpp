@@ -97,8 +97,7 @@ void check_duplicate_faces(const TriangleMesh& mesh) {
     std::sort(begin, end);
     const auto twice = std::adjacent_find(begin, end);
     if (twice != end) {
-      throw PostconditionFailed(
-          fmt::format("two faces over vertices {} {} {}", (*twice)[0], (*twice)[1], (*twice)[2]));
+      throw PostconditionFailed(fmt::format("two faces over vertices {} {} {}", (*twice)[0], (*twice)[1], (*twice)[2]));
     }
   }
 }

@@ -25,7 +25,8 @@ Vec3 normal_of(const std::vector<Vec3>& positions, const Triangle& t) {
 }
 
 // Whether the face looks against the input at all of its places that are tried.
-bool looks_against(const TriangleMesh& mesh, std::size_t face, const TriangleMesh& reference, const TriangleTree& tree) {
+bool looks_against(const TriangleMesh& mesh, std::size_t face, const TriangleMesh& reference,
+                   const TriangleTree& tree) {
   const auto& [a, b, c] = mesh.triangles[face];
   const Vec3 normal = normal_of(mesh.positions, mesh.triangles[face]);
   const Vec3 center = (mesh.positions[a] + mesh.positions[b] + mesh.positions[c]) / 3.0;
@@ -159,7 +160,9 @@ class Relocation {
         const std::size_t sides = w == v ? 0 : edges.faces_at(v, w).size();
         if (sides > 2) return {};
         if (sides == 1) sum[0] += result_.mesh.positions[w], count[0] += 1.0;
-        if (sides > 0) sum[1] += result_.mesh.positions[w] / static_cast<double>(sides), count[1] += 1.0 / static_cast<double>(sides);
+        if (sides > 0)
+          sum[1] += result_.mesh.positions[w] / static_cast<double>(sides),
+              count[1] += 1.0 / static_cast<double>(sides);
       }
     }
     const std::size_t kind = count[0] > 0.0 ? 0 : 1;
@@ -215,8 +218,8 @@ class Relocation {
   SimplifiedMesh& result_;
   Placement placement_;
   std::optional<KdTree> places_;
-  std::vector<Index> place_of_;      // point of the tree -> input vertex
-  std::vector<std::uint8_t> used_;   // per input vertex
+  std::vector<Index> place_of_;     // point of the tree -> input vertex
+  std::vector<std::uint8_t> used_;  // per input vertex
 };
 
 }  // namespace

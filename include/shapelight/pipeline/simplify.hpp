@@ -59,8 +59,9 @@ struct SimplifyOptions {
   static void describe(Self& o, Visitor&& visit) {
     visit(OptionInfo{"method", "", "How the mesh is simplified.", 0, 0}, o.method);
     SsimOptions::describe(o.ssim, visit);
-    visit(OptionInfo{"local-weight", "1", "Share of the guiding samples chosen for local detail (the paper's T).", 0, 1},
-          o.local_weight);
+    visit(
+        OptionInfo{"local-weight", "1", "Share of the guiding samples chosen for local detail (the paper's T).", 0, 1},
+        o.local_weight);
     visit(OptionInfo{"noise-threshold", "mean edge lengths",
                      "More noise than this: the error is measured against a denoised surface.", 0, 1e6},
           o.noise_threshold);
@@ -82,9 +83,10 @@ struct SimplifyResult {
   double noise = 0.0;                ///< sigma, [input length unit]; of the methods that look at it
   bool denoised = false;             ///< the error was measured against a denoised surface
   MeshOddities oddities;
-  std::optional<SurfaceDistance> measured;  ///< input to result; with SimplifySize::max_error or SimplifyOptions::measure
-  std::size_t runs = 1;                   ///< simplifications that the search for max_error took
-  std::vector<std::string> warnings;      ///< odd but usable things met, for people
+  std::optional<SurfaceDistance>
+      measured;                       ///< input to result; with SimplifySize::max_error or SimplifyOptions::measure
+  std::size_t runs = 1;               ///< simplifications that the search for max_error took
+  std::vector<std::string> warnings;  ///< odd but usable things met, for people
 };
 
 /// Fewer vertices, the same shape (paper, section III.A). A range image is cut into triangles first. A raw cloud has no
