@@ -49,13 +49,10 @@ class SheetCutter {
 
   Sheets run(MeshOddities& oddities) {
     oddities.duplicate_faces += remove_duplicates();
+    twin_.assign(3 * triangles_.size(), kNoIndex);
     junction_.assign(positions_.size(), 0);
-    pair_all();
-    if (const std::size_t membranes = remove_membranes(); membranes != 0) {
-      oddities.membrane_faces += membranes;
-      pair_all();
-    }
-    for_each_edge([&](std::span<const EdgeEnd> ends) { lock_junction(ends); });
+    group_edges();
+    for_each_edge([&](std::span<const EdgeEnd> ends) { pair_faces(ends); });
     oddities.reoriented_faces += orient();
     find_fans();
     if (cut_repeated_edges()) find_fans();
@@ -75,38 +72,21 @@ class SheetCutter {
       std::ranges::sort(t);
       return Face{t[1], t[2], static_cast<Index>(f)};
     });
-    std::vector<std::uint8_t> is_duplicate(triangles_.size(), 0);
+    std::vector<std::uint8_t> duplicate(triangles_.size(), 0);
     for (std::size_t v = 0; v < positions_.size(); ++v) {
       const auto here = faces.at(v);
       std::ranges::sort(here);
       for (std::size_t i = 1; i < here.size(); ++i) {
-        is_duplicate[here[i][2]] = here[i][0] == here[i - 1][0] && here[i][1] == here[i - 1][1];
+        duplicate[here[i][2]] = here[i][0] == here[i - 1][0] && here[i][1] == here[i - 1][1];
       }
     }
-    return remove_faces(is_duplicate);
-  }
-
-  std::size_t remove_faces(std::span<const std::uint8_t> is_removed) {
     const std::size_t before = triangles_.size();
     std::size_t kept = 0;
     for (std::size_t f = 0; f < before; ++f) {
-      if (!is_removed[f]) triangles_[kept++] = triangles_[f];
+      if (!duplicate[f]) triangles_[kept++] = triangles_[f];
     }
     triangles_.resize(kept);
     return before - kept;
-  }
-
-  // Faces that no neighbour was left for, at edges where the others are paired: the surface is whole without them,
-  // while keeping them would lock all three of their vertices.
-  std::size_t remove_membranes() {
-    std::vector<std::uint8_t> left_over(triangles_.size(), 0);  // edges of the face
-    for_each_edge([&](std::span<const EdgeEnd> ends) {
-      const auto is_paired = [&](const EdgeEnd& end) { return twin_[end.half_edge] != kNoIndex; };
-      if (std::ranges::none_of(ends, is_paired)) return;
-      for (const EdgeEnd& end : ends) left_over[face_of(end.half_edge)] += !is_paired(end);
-    });
-    for (std::uint8_t& count : left_over) count = count == 3;
-    return remove_faces(left_over);
   }
 
   void group_edges() {
@@ -132,12 +112,6 @@ class SheetCutter {
     }
   }
 
-  void pair_all() {
-    twin_.assign(3 * triangles_.size(), kNoIndex);
-    group_edges();
-    for_each_edge([&](std::span<const EdgeEnd> ends) { pair_faces(ends); });
-  }
-
   void pair(Index a, Index b) {
     twin_[a] = b;
     twin_[b] = a;
@@ -155,26 +129,22 @@ class SheetCutter {
   void pair_faces(std::span<const EdgeEnd> ends) {
     if (ends.size() == 1) return;
     if (ends.size() == 2) return pair(ends[0].half_edge, ends[1].half_edge);
-    if (ends.size() > kMaxFacesToPair) return;
-    std::vector<Vec3> wings;
-    for (const EdgeEnd& end : ends) wings.push_back(wing(end.half_edge));
-    std::vector<std::tuple<bool, double, Index, Index>> candidates;
-    for (std::size_t i = 0; i < ends.size(); ++i) {
-      for (std::size_t j = i + 1; j < ends.size(); ++j) {
-        const Index a = ends[i].half_edge, b = ends[j].half_edge;
-        const double fold = wings[i].dot(wings[j]);  // -1: flat; NaN on degenerate geometry
-        candidates.emplace_back(from(a) == from(b), fold <= 1.0 ? fold : 2.0, a, b);
+    if (ends.size() <= kMaxFacesToPair) {
+      std::vector<Vec3> wings;
+      for (const EdgeEnd& end : ends) wings.push_back(wing(end.half_edge));
+      std::vector<std::tuple<bool, double, Index, Index>> candidates;
+      for (std::size_t i = 0; i < ends.size(); ++i) {
+        for (std::size_t j = i + 1; j < ends.size(); ++j) {
+          const Index a = ends[i].half_edge, b = ends[j].half_edge;
+          const double fold = wings[i].dot(wings[j]);  // -1: flat; NaN on degenerate geometry
+          candidates.emplace_back(from(a) == from(b), fold <= 1.0 ? fold : 2.0, a, b);
+        }
+      }
+      std::ranges::sort(candidates);
+      for (const auto& [same_direction, fold, a, b] : candidates) {
+        if (twin_[a] == kNoIndex && twin_[b] == kNoIndex) pair(a, b);
       }
     }
-    std::ranges::sort(candidates);
-    for (const auto& [same_direction, fold, a, b] : candidates) {
-      if (twin_[a] == kNoIndex && twin_[b] == kNoIndex) pair(a, b);
-    }
-  }
-
-  // A face left over at an edge that others share.
-  void lock_junction(std::span<const EdgeEnd> ends) {
-    if (ends.size() == 1) return;
     for (const EdgeEnd& end : ends) {
       if (twin_[end.half_edge] == kNoIndex) lock_ends(end.half_edge);
     }

@@ -12,7 +12,7 @@ struct Sheets {
 };
 
 /// The general path of make_manifold(). Pre: indices in range, no face names a vertex twice.
-/// Counts duplicate, membrane and reoriented faces in `oddities`.
+/// Counts duplicate and reoriented faces in `oddities`.
 [[nodiscard]] Sheets cut_into_sheets(std::span<const Vec3> positions, std::vector<Triangle> triangles,
                                      MeshOddities& oddities);
 

@@ -133,18 +133,6 @@ TEST(MakeManifold, LocksAJunction) {
   EXPECT_EQ(merged.mesh.positions, fin.positions);
 }
 
-TEST(MakeManifold, LeavesMembranesOut) {
-  // Two tetrahedra on either side of a face that belongs to neither: with it, its corners would be locked.
-  TriangleMesh mesh;
-  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.3, 0.3, 1}, {0.3, 0.3, -1}};
-  mesh.triangles = {{0, 1, 3}, {1, 2, 3}, {2, 0, 3}, {0, 1, 2}, {1, 0, 4}, {2, 1, 4}, {0, 2, 4}};
-  const auto [made, met] = make(mesh);
-  expect_sound(made);
-  EXPECT_EQ(met.membrane_faces, 1u);
-  EXPECT_EQ(met.locked_vertices + met.split_vertices, 0u);
-  EXPECT_EQ(topology(made.mesh).euler(), 2);
-}
-
 TEST(MakeManifold, CutsAMoebiusStrip) {
   TriangleMesh strip;
   const Index n = 24;
@@ -245,7 +233,7 @@ TEST(MakeManifold, RandomSoups) {
     const auto [mesh, met] = make(soup, features);
     SCOPED_TRACE(seed);
     expect_sound(mesh);
-    EXPECT_EQ(mesh.mesh.triangles.size() + met.degenerate_faces + met.duplicate_faces + met.membrane_faces, num_faces);
+    EXPECT_EQ(mesh.mesh.triangles.size() + met.degenerate_faces + met.duplicate_faces, num_faces);
     EXPECT_EQ(mesh.source.size(), n - met.unused_vertices + met.split_vertices);
     ManifoldMesh copy = mesh;
     const std::size_t merged = num_merged_vertices(mesh);

@@ -40,7 +40,6 @@ struct SimplifiedMesh {
 struct MeshOddities {
   std::size_t degenerate_faces = 0;       ///< faces that name a vertex twice: left out
   std::size_t duplicate_faces = 0;        ///< further faces over the same three vertices: left out
-  std::size_t membrane_faces = 0;    ///< single faces between other sheets, joined to them by all edges: left out
   std::size_t reoriented_faces = 0;       ///< faces turned over to agree with their neighbours
   std::size_t split_vertices = 0;         ///< extra copies where sheets only touched: each sheet got its own vertex
   std::size_t locked_vertices = 0;        ///< where sheets meet and cannot be told apart: kept as they are
