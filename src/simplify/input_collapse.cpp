@@ -20,9 +20,8 @@ class InputRule : public CollapseRule {
 
 float InputRule::cost(Index u, Index v) const {
   const auto& from = mesh_.vertex(u);
-  if (from.flags & (CollapseMesh::kLocked | CollapseMesh::kLine)) {
-    if (from.is(CollapseMesh::kLocked) || !mesh_.is_next_on_line(u, v)) return kNever;
-  }
+  // Along its line only; a locked vertex is next to nobody.
+  if ((from.flags & (CollapseMesh::kLocked | CollapseMesh::kLine)) && !mesh_.is_next_on_line(u, v)) return kNever;
   const Vec3f d = mesh_.point(v).position() - mesh_.point(u).position();
   const float rise = mesh_.point(u).error + from.quadric.rise(d);
   const float error =
