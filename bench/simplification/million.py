@@ -66,6 +66,16 @@ def run_shapelight(arguments, name, mesh, wanted, threads):
     return {"program": name, "threads": threads, **row}, result
 
 
+def markdown(name, total, wanted, rows):
+    table = [[r["program"], str(r["threads"]), f"{r['wall']:.1f}", f"{r['process_cpu']:.1f}",
+              f"{r['speedup']:.2f}" if "speedup" in r else "-", f"{r['bytes_per_vertex']:.0f}",
+              {True: "yes", False: "NO"}.get(r.get("same_bytes"), "-"), f"{1e4 * r['rms']:.3g}", f"{r['normals']:.3g}"]
+             for r in rows]
+    head = ["program", "threads", "wall s with files", "CPU s with files", "speed-up without", "peak bytes a vertex",
+            "same bytes", "RMS 1e-4", "normals"]
+    return f"{name}, {total} vertices, to {wanted}:\n\n" + markdown_table(head, table)
+
+
 def main():
     parser = cells.parser(__doc__)
     parser.add_argument("--methods", nargs="*", default=["SSim", "SSim free, fast", "QSlim"])
@@ -101,13 +111,7 @@ def main():
         add({"program": "CGAL Lindstrom-Turk", "threads": 1, **run([collapse, "lt", mesh, result, wanted])}, result)
         result.unlink()
     cells.write_csv(arguments.output / "million.csv", rows)
-    table = [[r["program"], str(r["threads"]), f"{r.get('simplify_wall', r['wall']):.1f}", f"{r['process_cpu']:.1f}",
-              f"{r['speedup']:.2f}" if "speedup" in r else "-", f"{r['bytes_per_vertex']:.0f}",
-              {True: "yes", False: "NO"}.get(r.get("same_bytes"), "-"), f"{1e4 * r['rms']:.3g}", f"{r['normals']:.3g}"]
-             for r in rows]
-    text = (f"{name}, {total} vertices, to {wanted}:\n\n" + markdown_table(
-        ["program", "threads", "wall s", "CPU s with files", "speed-up", "peak bytes a vertex", "same bytes", "RMS 1e-4",
-         "normals"], table))
+    text = markdown(name, total, wanted, rows)
     (arguments.output / "million.md").write_text(text)
     if arguments.document:
         cells.replace_part(arguments.document, "million", text)
