@@ -2,7 +2,7 @@
 
   python bench/simplification/million.py --data data --meshes armadillo --output out
 
-The mesh is a small one with every triangle cut into k x k, rounded and given waves and fine grain, the same in every run.
+The mesh is a small one with every triangle cut into k x k, rounded, with waves and fine grain, the same in every run.
 Writes million.csv and million.md. Memory is the peak of the whole process, files included.
 """
 
@@ -23,7 +23,7 @@ KEPT = 0.1
 
 
 def displaced(points, triangles):
-    """Rounds the flat pieces, then moves vertices along their normals: waves of 8 to 60 edges and grain of a twentieth."""
+    """Rounds the flat pieces, then moves vertices along their normals: waves of 8 to 60 edges, and grain."""
     points = taubin(points, triangles, iterations=10)
     edge, normals = mean_edge(points, triangles), vertex_normals(points, triangles)
     height = np.zeros(len(points))
@@ -58,8 +58,8 @@ def run(command):
 def run_shapelight(arguments, name, mesh, wanted, threads):
     result, report = arguments.output / f"{name}-{threads}.off", arguments.output / "report.json"
     options = methods.SHAPELIGHT[name]
-    row = run([arguments.shapelight, "simplify", mesh, "-o", result, "--vertices", wanted, "--threads", threads, "--force",
-               "-q", "--json", report, *options])
+    row = run([arguments.shapelight, "simplify", mesh, "-o", result, "--vertices", wanted, "--threads", threads,
+               "--force", "-q", "--json", report, *options])
     seconds = json.loads(report.read_text())["seconds"]
     report.unlink()
     row["simplify_wall"] = seconds["total"] - seconds.get("read", 0) - seconds.get("write", 0)
