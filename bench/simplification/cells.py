@@ -1,4 +1,4 @@
-"""One cell of an experiment: a mesh, simplified and judged. Cells are kept on disk, so a run that was cut short goes on."""
+"""One cell of an experiment: a mesh, simplified and judged. Kept on disk, so that a run can be cut short."""
 
 import argparse
 import csv
@@ -11,7 +11,8 @@ import methods
 import numpy as np
 from meshes import prepare
 
-FIGURES = {"rms": ("RMS distance, 1e-4 of the diagonal", 1e4), "hausdorff": ("largest distance, 1e-3 of the diagonal", 1e3),
+FIGURES = {"rms": ("RMS distance, 1e-4 of the diagonal", 1e4),
+           "hausdorff": ("largest distance, 1e-3 of the diagonal", 1e3),
            "normals": ("normals, RMS angle in degrees", 1.0), "cpu_seconds": ("CPU seconds", 1.0)}
 
 
@@ -44,7 +45,7 @@ class Cells:
         wanted = round((1 - removed) * total)
         name = re.sub(r"[^A-Za-z0-9.]+", "-", f"{mesh.stem} {100 * removed:g} {method.name}")
         file = self.folder / "cells" / f"{name}.json"
-        identity = f"{method.identity} {methods.digest(mesh)} {methods.digest(reference)} {methods.digest(self.judge_binary)}"
+        identity = " ".join([method.identity, *map(methods.digest, (mesh, reference, self.judge_binary))])
         if file.exists():
             kept = json.loads(file.read_text())
             if kept["identity"] == identity:

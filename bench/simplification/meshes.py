@@ -1,4 +1,4 @@
-"""The meshes of the experiments as numpy arrays and OFF files: every program gets the same triangles in full precision."""
+"""The meshes of the experiments as arrays and OFF files: every program gets the same triangles in full precision."""
 
 import subprocess
 from pathlib import Path
@@ -68,7 +68,8 @@ def triangulate_grid(points, grid):
     along_ac = length(a, c) <= length(b, d)
     along_ac = np.where((b < 0) | (d < 0), True, np.where((a < 0) | (c < 0), False, along_ac))
     corners = np.concatenate([np.stack(t, axis=1)[cut] for t, cut in
-                              (((a, b, c), along_ac), ((a, c, d), along_ac), ((a, b, d), ~along_ac), ((b, c, d), ~along_ac))])
+                              (((a, b, c), along_ac), ((a, c, d), along_ac),
+                               ((a, b, d), ~along_ac), ((b, c, d), ~along_ac))])
     corners = corners[(corners >= 0).all(axis=1)]
     sides = np.stack([length(corners[:, i], corners[:, (i + 1) % 3]) for i in range(3)], axis=1)
     return corners[sides.max(axis=1) <= DEPTH_JUMP * np.median(sides)]

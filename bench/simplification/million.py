@@ -2,7 +2,7 @@
 
   python bench/simplification/million.py --data data --meshes armadillo --output out
 
-The mesh is a small one with every triangle cut into k x k, rounded and given waves and fine grain, the same in every run.
+The mesh is a small one with every triangle cut into k x k, rounded, with waves and fine grain, the same in every run.
 Writes million.csv and million.md. Memory is the peak of the whole process, files included.
 """
 
@@ -23,7 +23,7 @@ KEPT = 0.1
 
 
 def displaced(points, triangles):
-    """Rounds the flat pieces, then moves vertices along their normals: waves of 8 to 60 edges and grain of a twentieth."""
+    """Rounds the flat pieces, then moves vertices along their normals: waves of 8 to 60 edges, and grain."""
     points = taubin(points, triangles, iterations=10)
     edge, normals = mean_edge(points, triangles), vertex_normals(points, triangles)
     height = np.zeros(len(points))
@@ -58,12 +58,22 @@ def run(command):
 def run_shapelight(arguments, name, mesh, wanted, threads):
     result, report = arguments.output / f"{name}-{threads}.off", arguments.output / "report.json"
     options = methods.SHAPELIGHT[name]
-    row = run([arguments.shapelight, "simplify", mesh, "-o", result, "--vertices", wanted, "--threads", threads, "--force",
-               "-q", "--json", report, *options])
+    row = run([arguments.shapelight, "simplify", mesh, "-o", result, "--vertices", wanted, "--threads", threads,
+               "--force", "-q", "--json", report, *options])
     seconds = json.loads(report.read_text())["seconds"]
     report.unlink()
     row["simplify_wall"] = seconds["total"] - seconds.get("read", 0) - seconds.get("write", 0)
     return {"program": name, "threads": threads, **row}, result
+
+
+def markdown(name, total, wanted, rows):
+    table = [[r["program"], str(r["threads"]), f"{r['wall']:.1f}", f"{r['process_cpu']:.1f}",
+              f"{r['speedup']:.2f}" if "speedup" in r else "-", f"{r['bytes_per_vertex']:.0f}",
+              {True: "yes", False: "NO"}.get(r.get("same_bytes"), "-"), f"{1e4 * r['rms']:.3g}", f"{r['normals']:.3g}"]
+             for r in rows]
+    head = ["program", "threads", "wall s with files", "CPU s with files", "speed-up without", "peak bytes a vertex",
+            "same bytes", "RMS 1e-4", "normals"]
+    return f"{name}, {total} vertices, to {wanted}:\n\n" + markdown_table(head, table)
 
 
 def main():
@@ -101,13 +111,7 @@ def main():
         add({"program": "CGAL Lindstrom-Turk", "threads": 1, **run([collapse, "lt", mesh, result, wanted])}, result)
         result.unlink()
     cells.write_csv(arguments.output / "million.csv", rows)
-    table = [[r["program"], str(r["threads"]), f"{r.get('simplify_wall', r['wall']):.1f}", f"{r['process_cpu']:.1f}",
-              f"{r['speedup']:.2f}" if "speedup" in r else "-", f"{r['bytes_per_vertex']:.0f}",
-              {True: "yes", False: "NO"}.get(r.get("same_bytes"), "-"), f"{1e4 * r['rms']:.3g}", f"{r['normals']:.3g}"]
-             for r in rows]
-    text = (f"{name}, {total} vertices, to {wanted}:\n\n" + markdown_table(
-        ["program", "threads", "wall s", "CPU s with files", "speed-up", "peak bytes a vertex", "same bytes", "RMS 1e-4",
-         "normals"], table))
+    text = markdown(name, total, wanted, rows)
     (arguments.output / "million.md").write_text(text)
     if arguments.document:
         cells.replace_part(arguments.document, "million", text)

@@ -2,7 +2,7 @@
 
   python bench/simplification/noise.py --data data --output out
 
-Gaussian noise of 0.1 % of the diagonal in every coordinate. "Smoothed, then X" runs X on the mesh after 15 iterations of
+Gaussian noise of 0.1 % of the diagonal in every coordinate. "Smoothed, then X" runs X on the mesh after 15 rounds of
 Taubin's smoothing, so its vertices are no input points. Also on the clean mesh: SSim without samples, as a control.
 Writes noise.csv and noise.md.
 """

@@ -1,4 +1,4 @@
-"""Simplifiers with a Python interface, each in a process of its own: python python_peers.py PEER IN.off OUT.off VERTICES
+"""Simplifiers with a Python interface: python python_peers.py PEER IN.off OUT.off VERTICES
 
 They take a number of triangles, so it is searched until the number of vertices fits; only the last call is timed.
 Prints JSON: CPU seconds of that call (all threads) and vertices.

@@ -53,7 +53,8 @@ def ratio_row(rows, base, method):
     """Geometric means of every figure, and of the RMS distance the worst cell and how many cells are below 1."""
     texts = []
     for figure in FIGURES:
-        values = [[v for (_, r), v in ratios_to(rows, base, method, figure).items() if r == removed] for removed in REMOVED]
+        ratios = ratios_to(rows, base, method, figure)
+        values = [[v for (_, r), v in ratios.items() if r == removed] for removed in REMOVED]
         texts.append(" / ".join(number(cells.geometric_mean(v)) if v else "-" for v in values))
     distances = ratios_to(rows, base, method, "rms")
     worst = max(distances, key=distances.get)
@@ -88,7 +89,7 @@ def full_tables(rows, names):
 def remarks(rows):
     """Failures, and results with another number of vertices than asked."""
     lines = [f"- {r['method']}, {r['mesh']} {100 * r['removed']:g} %: {r['error']}" for r in rows if "error" in r]
-    lines += [f"- {r['method']}, {r['mesh']} {100 * r['removed']:g} %: {r['vertices']} vertices instead of {r['wanted']}"
+    lines += [f"- {r['method']}, {r['mesh']} {100 * r['removed']:g} %: {r['vertices']} vertices, not {r['wanted']}"
               for r in rows if "rms" in r and r["vertices"] != r["wanted"]]
     return "Failed, or not the number of vertices asked for:\n\n" + "\n".join(lines) + "\n" if lines else ""
 
@@ -150,7 +151,7 @@ def main():
         for removed in REMOVED:
             for name in names:
                 rows.append(bench.measure(every[name], mesh, removed))
-                print(*(f"{v:.4g}" if isinstance(v, float) else v for v in rows[-1].values()), file=sys.stderr, flush=True)
+                print(*rows[-1].values(), file=sys.stderr, flush=True)
     arguments.output.mkdir(parents=True, exist_ok=True)
     cells.write_csv(arguments.output / "table1.csv", rows)
     text = markdown(rows, names)
