@@ -161,7 +161,7 @@ Job make_job(const std::filesystem::path& path, double keep) {
   RunContext context;
   // All vertices kept: what is not used by a triangle is left out.
   job.mesh = simplify_qslim({geometry.positions, geometry.triangles}, {.vertices = geometry.size()}).mesh;
-  job.manifold = simplify::make_manifold(job.mesh, {}, context, nullptr).mesh;
+  job.manifold = simplification::make_manifold(job.mesh, {}, context, nullptr).mesh;
   job.vertices = static_cast<std::size_t>(keep * static_cast<double>(job.mesh.positions.size()) + 0.5);
   double seconds = 0.0;
   const TriangleMesh ours = run_ours(job, Placement::Input, seconds);

@@ -8,7 +8,7 @@
 
 #include "shapelight/core/types.hpp"
 
-namespace shapelight::simplify {
+namespace shapelight::simplification {
 
 /// A priority queue that is exact to an eighth of an octave: buckets by the leading bits of a float key, which sort
 /// like the key itself. A round is a whole bucket in order of arrival; nothing is ever moved, and because the next
@@ -48,4 +48,4 @@ class BucketQueue {
   std::size_t current_ = 0;
 };
 
-}  // namespace shapelight::simplify
+}  // namespace shapelight::simplification

@@ -136,7 +136,7 @@ void check_edges(const SimplifiedMesh& reference, const SimplifiedMesh& result, 
 }  // namespace
 
 SimplifiedMesh without_oddities(const TriangleMesh& mesh, MeshOddities& oddities, const RunContext& context) {
-  return simplify::merge_copies(simplify::make_manifold(mesh, {}, context, &oddities));
+  return simplification::merge_copies(simplification::make_manifold(mesh, {}, context, &oddities));
 }
 
 void check_result(const SimplifiedMesh& reference, const SimplifiedMesh& result, const SimplifyTarget& target,

@@ -10,7 +10,7 @@
 #include "simplify/bucket_queue.hpp"
 #include "simplify/collapse_rule.hpp"
 
-namespace shapelight::simplify {
+namespace shapelight::simplification {
 
 inline constexpr float kParked = -1.0f;  // key of a vertex that waits for its ring to change
 
@@ -191,4 +191,4 @@ ManifoldMesh run_collapse(ManifoldMesh&& input, const SimplifyTarget& target, co
   return mesh.finish(std::move(input), context);
 }
 
-}  // namespace shapelight::simplify
+}  // namespace shapelight::simplification

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
-namespace shapelight::simplify {
+namespace shapelight::simplification {
 namespace {
 
 // A new face is a sliver below this ratio of twice its area to the sum of its squared sides (0.58 when equilateral),
@@ -175,4 +175,4 @@ CollapseMesh::Wing CollapseMesh::collapse(Index u, Index v) {
   return wing;
 }
 
-}  // namespace shapelight::simplify
+}  // namespace shapelight::simplification

@@ -7,7 +7,7 @@
 #include "simplify/manifold_mesh.hpp"
 #include "simplify/quadric.hpp"
 
-namespace shapelight::simplify {
+namespace shapelight::simplification {
 
 /// A manifold mesh for edge collapses: no faces and no half-edges, only the ordered neighbours ("ring") of every
 /// vertex, in one arena. Vertices are numbered along a Morton curve and one collapse touches one neighbourhood, so
@@ -107,4 +107,4 @@ class CollapseMesh {
   double scale_ = 1.0;
 };
 
-}  // namespace shapelight::simplify
+}  // namespace shapelight::simplification

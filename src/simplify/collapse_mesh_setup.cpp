@@ -6,7 +6,7 @@
 #include "simplify/morton_order.hpp"
 #include "simplify/wedges.hpp"
 
-namespace shapelight::simplify {
+namespace shapelight::simplification {
 CollapseMesh::CollapseMesh(const ManifoldMesh& mesh, double boundary_weight, const RunContext& context) {
   const auto& positions = mesh.mesh.positions;
   const auto& triangles = mesh.mesh.triangles;
@@ -142,4 +142,4 @@ ManifoldMesh CollapseMesh::finish(ManifoldMesh&& input, const RunContext& contex
   return result;
 }
 
-}  // namespace shapelight::simplify
+}  // namespace shapelight::simplification

@@ -9,7 +9,7 @@
 #include "simplify/collapse_mesh.hpp"
 #include "simplify/quadric_collapse.hpp"
 
-namespace shapelight::simplify {
+namespace shapelight::simplification {
 
 inline constexpr float kNever = std::numeric_limits<float>::infinity();
 
@@ -50,4 +50,4 @@ class CollapseRule {
 [[nodiscard]] ManifoldMesh collapse_into_optimum(ManifoldMesh&& mesh, const SimplifyTarget& target,
                                                  const QuadricCollapse& options, const RunContext& context);
 
-}  // namespace shapelight::simplify
+}  // namespace shapelight::simplification

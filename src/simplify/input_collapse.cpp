@@ -1,6 +1,6 @@
 #include "simplify/collapse_loop.hpp"
 
-namespace shapelight::simplify {
+namespace shapelight::simplification {
 namespace {
 
 // Placement::Input: u goes into its neighbour v, which stays where it is. Every vertex keeps its own best target.
@@ -51,4 +51,4 @@ ManifoldMesh collapse_into_input(ManifoldMesh&& mesh, const SimplifyTarget& targ
   return run_collapse<InputRule>(std::move(mesh), target, options, context);
 }
 
-}  // namespace shapelight::simplify
+}  // namespace shapelight::simplification

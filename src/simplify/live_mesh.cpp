@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace shapelight::simplify {
+namespace shapelight::simplification {
 namespace {
 
 bool has_corner(const Triangle& t, Index v) { return t[0] == v || t[1] == v || t[2] == v; }
@@ -213,4 +213,4 @@ ManifoldMesh LiveMesh::compact() && {
   return out;
 }
 
-}  // namespace shapelight::simplify
+}  // namespace shapelight::simplification

@@ -7,7 +7,7 @@
 
 #include "simplify/manifold_mesh.hpp"
 
-namespace shapelight::simplify {
+namespace shapelight::simplification {
 
 /// The faces around every vertex, unordered, in one arena.
 class StarTable {
@@ -88,4 +88,4 @@ class LiveMesh {
   std::size_t live_faces_ = 0;
 };
 
-}  // namespace shapelight::simplify
+}  // namespace shapelight::simplification

@@ -10,7 +10,7 @@
 #include "simplify/sheets.hpp"
 #include "simplify/wedges.hpp"
 
-namespace shapelight::simplify {
+namespace shapelight::simplification {
 namespace {
 
 // Checks every index and every vertex in use; returns the faces that name three different vertices.
@@ -214,4 +214,4 @@ std::size_t num_merged_vertices(const ManifoldMesh& mesh) {
   return mesh.source.size() - copies;
 }
 
-}  // namespace shapelight::simplify
+}  // namespace shapelight::simplification

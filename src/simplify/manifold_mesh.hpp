@@ -8,7 +8,7 @@
 #include "shapelight/core/run_context.hpp"
 #include "shapelight/simplify/simplified_mesh.hpp"
 
-namespace shapelight::simplify {
+namespace shapelight::simplification {
 
 /// A mesh that collapses can work on: every edge has one face or two that run it in opposite directions, every vertex
 /// has one fan of faces, every vertex is used. Vertices on non-manifold input are copies, one per fan.
@@ -33,4 +33,4 @@ struct ManifoldMesh {
 /// Vertices that merge_copies() would return.
 [[nodiscard]] std::size_t num_merged_vertices(const ManifoldMesh& mesh);
 
-}  // namespace shapelight::simplify
+}  // namespace shapelight::simplification

@@ -7,7 +7,7 @@
 #include "core/parallel.hpp"
 #include "simplify/star_shape.hpp"
 
-namespace shapelight::simplify {
+namespace shapelight::simplification {
 namespace {
 
 constexpr std::size_t kChunk = 64;    // vertices per chunk: an evaluation takes microseconds
@@ -283,4 +283,4 @@ bool collapse_measured(MeasuredMesh& measured, std::size_t num_to_remove, const 
   return Collapser(measured, options, context).run(num_to_remove);
 }
 
-}  // namespace shapelight::simplify
+}  // namespace shapelight::simplification

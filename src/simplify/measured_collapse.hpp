@@ -5,7 +5,7 @@
 
 #include "simplify/measured_mesh.hpp"
 
-namespace shapelight::simplify {
+namespace shapelight::simplification {
 
 struct MeasuredCollapse {
   std::span<const float> removal_weight{};  ///< per input vertex: factor on what removing it costs
@@ -21,4 +21,4 @@ struct MeasuredCollapse {
 [[nodiscard]] bool collapse_measured(MeasuredMesh& measured, std::size_t num_to_remove, const MeasuredCollapse& options,
                                      const RunContext& context);
 
-}  // namespace shapelight::simplify
+}  // namespace shapelight::simplification

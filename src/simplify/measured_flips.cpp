@@ -6,7 +6,7 @@
 #include "core/parallel.hpp"
 #include "simplify/star_shape.hpp"
 
-namespace shapelight::simplify {
+namespace shapelight::simplification {
 namespace {
 
 constexpr double kMinGain = 1e-3;  // share of the energy of the two faces
@@ -110,4 +110,4 @@ std::size_t flip_edges(MeasuredMesh& measured, const RunContext& context) {
   return done;
 }
 
-}  // namespace shapelight::simplify
+}  // namespace shapelight::simplification

@@ -6,7 +6,7 @@
 #include "core/parallel.hpp"
 #include "shapelight/spatial/triangle_tree.hpp"
 
-namespace shapelight::simplify {
+namespace shapelight::simplification {
 namespace {
 
 constexpr double kLineShare = 0.15;    // weight of a line sample per length, in units of the output's edge length
@@ -261,4 +261,4 @@ bool MeasuredMesh::agrees_with_input(const Vec3& normal, Index a, Index b, Index
   return along > 0.0 && along * along > kMinAgreement * kMinAgreement * length_sq;
 }
 
-}  // namespace shapelight::simplify
+}  // namespace shapelight::simplification

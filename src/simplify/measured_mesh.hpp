@@ -8,7 +8,7 @@
 #include "simplify/live_mesh.hpp"
 #include "simplify/sample_block.hpp"
 
-namespace shapelight::simplify {
+namespace shapelight::simplification {
 
 /// A point of the input surface, attached to the face of the live mesh that stands for it. One cache line.
 struct SurfaceSample {
@@ -83,4 +83,4 @@ class MeasuredMesh {
 
 [[nodiscard]] double segment_distance_sq(const Vec3& p, const Vec3& a, const Vec3& b);
 
-}  // namespace shapelight::simplify
+}  // namespace shapelight::simplification

@@ -5,7 +5,7 @@
 
 #include "core/parallel.hpp"
 
-namespace shapelight::simplify {
+namespace shapelight::simplification {
 namespace {
 
 // Ten bits spread out to every third place.
@@ -51,4 +51,4 @@ std::vector<Index> morton_order(std::span<const Vec3> positions, const Vec3& low
   return order;
 }
 
-}  // namespace shapelight::simplify
+}  // namespace shapelight::simplification

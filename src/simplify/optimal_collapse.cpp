@@ -1,6 +1,6 @@
 #include "simplify/collapse_loop.hpp"
 
-namespace shapelight::simplify {
+namespace shapelight::simplification {
 namespace {
 
 // Share of its trace added to a matrix before it is solved about the edge's midpoint.
@@ -107,4 +107,4 @@ ManifoldMesh collapse_into_optimum(ManifoldMesh&& mesh, const SimplifyTarget& ta
   return run_collapse<OptimalRule>(std::move(mesh), target, options, context);
 }
 
-}  // namespace shapelight::simplify
+}  // namespace shapelight::simplification

@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-namespace shapelight::simplify {
+namespace shapelight::simplification {
 
 using Vec3f = Eigen::Vector3f;
 
@@ -70,4 +70,4 @@ struct Quadric {
   }
 };
 
-}  // namespace shapelight::simplify
+}  // namespace shapelight::simplification

@@ -3,7 +3,7 @@
 #include "shapelight/core/error.hpp"
 #include "simplify/collapse_rule.hpp"
 
-namespace shapelight::simplify {
+namespace shapelight::simplification {
 
 ManifoldMesh collapse_quadrics(ManifoldMesh&& mesh, const SimplifyTarget& target, const QuadricCollapse& options,
                                const RunContext& context) {
@@ -14,4 +14,4 @@ ManifoldMesh collapse_quadrics(ManifoldMesh&& mesh, const SimplifyTarget& target
   return collapse(std::move(mesh), target, options, context);
 }
 
-}  // namespace shapelight::simplify
+}  // namespace shapelight::simplification

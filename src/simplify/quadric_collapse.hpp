@@ -5,7 +5,7 @@
 #include "shapelight/core/run_context.hpp"
 #include "simplify/manifold_mesh.hpp"
 
-namespace shapelight::simplify {
+namespace shapelight::simplification {
 
 struct QuadricCollapse {
   Placement placement = Placement::Input;
@@ -18,4 +18,4 @@ struct QuadricCollapse {
 [[nodiscard]] ManifoldMesh collapse_quadrics(ManifoldMesh&& mesh, const SimplifyTarget& target,
                                              const QuadricCollapse& options, const RunContext& context);
 
-}  // namespace shapelight::simplify
+}  // namespace shapelight::simplification

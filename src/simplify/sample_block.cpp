@@ -6,7 +6,7 @@
 
 #include "core/vectorize.hpp"
 
-namespace shapelight::simplify {
+namespace shapelight::simplification {
 namespace {
 
 constexpr std::size_t kLanes = 8;
@@ -111,4 +111,4 @@ double SampleBlock::total() const {
   return sum;
 }
 
-}  // namespace shapelight::simplify
+}  // namespace shapelight::simplification

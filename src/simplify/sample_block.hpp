@@ -6,7 +6,7 @@
 
 #include "shapelight/core/types.hpp"
 
-namespace shapelight::simplify {
+namespace shapelight::simplification {
 
 /// A triangle in a local frame: corners relative to the frame's origin.
 struct LocalTriangle {
@@ -44,4 +44,4 @@ class SampleBlock {
   std::size_t size_ = 0;
 };
 
-}  // namespace shapelight::simplify
+}  // namespace shapelight::simplification

@@ -4,7 +4,7 @@
 #include <numeric>
 #include <tuple>
 
-namespace shapelight::simplify {
+namespace shapelight::simplification {
 namespace {
 
 // Above this many faces at one edge nobody can tell which belong together: none are paired.
@@ -286,4 +286,4 @@ Sheets cut_into_sheets(std::span<const Vec3> positions, std::vector<Triangle> tr
   return SheetCutter(positions, std::move(triangles)).run(oddities);
 }
 
-}  // namespace shapelight::simplify
+}  // namespace shapelight::simplification

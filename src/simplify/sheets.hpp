@@ -2,7 +2,7 @@
 
 #include "simplify/manifold_mesh.hpp"
 
-namespace shapelight::simplify {
+namespace shapelight::simplification {
 
 /// Any triangles cut into sheets, each of them an oriented manifold with border.
 struct Sheets {
@@ -16,4 +16,4 @@ struct Sheets {
 [[nodiscard]] Sheets cut_into_sheets(std::span<const Vec3> positions, std::vector<Triangle> triangles,
                                      MeshOddities& oddities);
 
-}  // namespace shapelight::simplify
+}  // namespace shapelight::simplification

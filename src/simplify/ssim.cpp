@@ -19,7 +19,7 @@
 namespace shapelight {
 namespace {
 
-using namespace simplify;
+using namespace simplification;
 
 constexpr int kMaxFlipPasses = 6;
 constexpr double kQuadricBoundary =

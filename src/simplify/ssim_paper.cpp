@@ -18,16 +18,16 @@ SimplifiedMesh simplify_ssim_paper(const TriangleMesh& mesh, const SimplifyTarge
     }
     is_sample[v] = 1;
   }
-  simplify::ManifoldMesh manifold =
-      simplify::make_manifold(mesh, features, context.phase(0.0, 0.2, "sheets"), oddities);
+  simplification::ManifoldMesh manifold =
+      simplification::make_manifold(mesh, features, context.phase(0.0, 0.2, "sheets"), oddities);
   std::vector<float> removal_weight(manifold.source.size(), 1.0f);
   for (std::size_t v = 0; v < removal_weight.size(); ++v) {
     if (is_sample[manifold.source[v]]) removal_weight[v] = std::numeric_limits<float>::infinity();
   }
-  simplify::QuadricCollapse collapse;
+  simplification::QuadricCollapse collapse;
   collapse.removal_weight = removal_weight;
-  return simplify::merge_copies(
-      simplify::collapse_quadrics(std::move(manifold), target, collapse, context.phase(0.2, 1.0, "collapse")));
+  return simplification::merge_copies(
+      simplification::collapse_quadrics(std::move(manifold), target, collapse, context.phase(0.2, 1.0, "collapse")));
 }
 
 }  // namespace shapelight

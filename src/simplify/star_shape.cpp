@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace shapelight::simplify {
+namespace shapelight::simplification {
 
 LocalTriangle triangle_with(const LiveMesh& mesh, Index face, Index v, const Vec3& place, const Vec3& origin) {
   const Triangle& t = mesh.face(face);
@@ -48,4 +48,4 @@ std::vector<std::vector<Index>> independent_classes(const LiveMesh& mesh, std::s
   return classes;
 }
 
-}  // namespace shapelight::simplify
+}  // namespace shapelight::simplification

@@ -3,7 +3,7 @@
 #include "simplify/live_mesh.hpp"
 #include "simplify/sample_block.hpp"
 
-namespace shapelight::simplify {
+namespace shapelight::simplification {
 
 /// The face with corner v at `place` in place of where v is, relative to `origin`.
 [[nodiscard]] LocalTriangle triangle_with(const LiveMesh& mesh, Index face, Index v, const Vec3& place,
@@ -35,4 +35,4 @@ struct StarShape {
 [[nodiscard]] std::vector<std::vector<Index>> independent_classes(const LiveMesh& mesh,
                                                                   std::span<const Index> vertices);
 
-}  // namespace shapelight::simplify
+}  // namespace shapelight::simplification

@@ -7,7 +7,7 @@
 #include "core/parallel.hpp"
 #include "simplify/star_shape.hpp"
 
-namespace shapelight::simplify {
+namespace shapelight::simplification {
 namespace {
 
 constexpr double kTangential = 0.003;  // weight of a sample's displacement along its face
@@ -240,4 +240,4 @@ void fit_vertices(MeasuredMesh& measured, std::span<const Index> vertices, doubl
   }
 }
 
-}  // namespace shapelight::simplify
+}  // namespace shapelight::simplification

@@ -9,7 +9,7 @@
 #include "simplify/measured_mesh.hpp"
 #include "simplify/star_shape.hpp"
 
-namespace shapelight::simplify {
+namespace shapelight::simplification {
 
 /// Quadratic model of the energy around one vertex, over its displacement x: x'Ax - 2 g'x.
 struct FitModel {
@@ -73,4 +73,4 @@ class InputSurface {
 void fit_vertices(MeasuredMesh& measured, std::span<const Index> vertices, double normal_weight, InputSurface& input,
                   const RunContext& context);
 
-}  // namespace shapelight::simplify
+}  // namespace shapelight::simplification

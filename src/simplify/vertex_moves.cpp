@@ -7,7 +7,7 @@
 #include "simplify/star_shape.hpp"
 #include "simplify/vertex_fit.hpp"
 
-namespace shapelight::simplify {
+namespace shapelight::simplification {
 namespace {
 
 constexpr std::size_t kMaxTrials = 6;  // places tried per vertex, the most promising first
@@ -99,4 +99,4 @@ std::size_t move_vertices(MeasuredMesh& measured, InputPlaces& places, double no
   return moves;
 }
 
-}  // namespace shapelight::simplify
+}  // namespace shapelight::simplification

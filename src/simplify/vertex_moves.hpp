@@ -5,7 +5,7 @@
 
 #include "simplify/measured_mesh.hpp"
 
-namespace shapelight::simplify {
+namespace shapelight::simplification {
 
 /// Which input vertices the live vertices stand on, for moves that keep them on input vertices.
 struct InputPlaces {
@@ -19,4 +19,4 @@ struct InputPlaces {
 /// Vertices on lines move along their line. Returns the number of moves.
 std::size_t move_vertices(MeasuredMesh& measured, InputPlaces& places, double normal_weight, const RunContext& context);
 
-}  // namespace shapelight::simplify
+}  // namespace shapelight::simplification

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace shapelight::simplify {
+namespace shapelight::simplification {
 namespace {
 
 // Fans above this size are sorted before they are walked.
@@ -105,4 +105,4 @@ Fan order_fan(std::span<Wedge> wedges) {
   return wedges.size() <= kLargeFan ? order_small_fan(wedges) : order_large_fan(wedges);
 }
 
-}  // namespace shapelight::simplify
+}  // namespace shapelight::simplification

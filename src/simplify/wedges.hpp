@@ -6,7 +6,7 @@
 
 #include "shapelight/core/types.hpp"
 
-namespace shapelight::simplify {
+namespace shapelight::simplification {
 
 /// A face seen from one of its vertices: the face is (vertex, next, previous).
 struct Wedge {
@@ -37,4 +37,4 @@ enum class Fan : std::uint8_t {
 /// An open fan begins at its border, a closed one at its first wedge. Cost: quadratic for few, n log n for many.
 [[nodiscard]] Fan order_fan(std::span<Wedge> wedges);
 
-}  // namespace shapelight::simplify
+}  // namespace shapelight::simplification

@@ -7,7 +7,7 @@
 #include "support/mesh_topology.hpp"
 #include "support/shapes.hpp"
 
-namespace shapelight::simplify {
+namespace shapelight::simplification {
 namespace {
 
 using shapelight::testing::Shape;
@@ -145,4 +145,4 @@ TEST(LiveMesh, FlipNeverDoublesAnEdgeNorCrossesALine) {
 }
 
 }  // namespace
-}  // namespace shapelight::simplify
+}  // namespace shapelight::simplification

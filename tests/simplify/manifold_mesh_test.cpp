@@ -11,7 +11,7 @@
 #include "support/mesh_topology.hpp"
 #include "support/shapes.hpp"
 
-namespace shapelight::simplify {
+namespace shapelight::simplification {
 namespace {
 
 using shapelight::testing::Shape;
@@ -272,4 +272,4 @@ TEST(MakeManifold, SameForAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace shapelight::simplify
+}  // namespace shapelight::simplification

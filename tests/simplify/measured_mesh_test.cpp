@@ -14,7 +14,7 @@
 #include "simplify/vertex_moves.hpp"
 #include "support/shapes.hpp"
 
-namespace shapelight::simplify {
+namespace shapelight::simplification {
 namespace {
 
 using shapelight::testing::Shape;
@@ -197,4 +197,4 @@ TEST(IndependentClasses, NoTwoNeighboursShareOneAndNobodyIsLeftOut) {
 }
 
 }  // namespace
-}  // namespace shapelight::simplify
+}  // namespace shapelight::simplification

@@ -79,7 +79,7 @@ void expect_input_vertices(const SimplifiedMesh& result, const TriangleMesh& inp
 
 TEST_P(Qslim, KeepsTheTopologyOfSurfaces) {
   const auto split = [](const TriangleMesh& mesh) {  // touching sheets come apart: compare with what was collapsed
-    return topology(simplify::make_manifold(mesh, {}, {}, nullptr).mesh);
+    return topology(simplification::make_manifold(mesh, {}, {}, nullptr).mesh);
   };
   for (const TriangleMesh& mesh :
        {as_mesh(testing::sphere(3, 1.0, 0.1)), as_mesh(testing::torus(40, 24, 2.0, 0.5)),
@@ -195,11 +195,11 @@ TEST_P(Qslim, FeatureLinesSurvive) {
     // Rows are shifted in turn: the seam takes the edges that lead straight up.
     seam.push_back({r * side + 10, (r + 1) * side + 10});
   }
-  simplify::ManifoldMesh mesh = simplify::make_manifold(as_mesh(shape), seam, {}, nullptr);
-  simplify::QuadricCollapse options;
+  simplification::ManifoldMesh mesh = simplification::make_manifold(as_mesh(shape), seam, {}, nullptr);
+  simplification::QuadricCollapse options;
   options.placement = GetParam();
   options.boundary_weight = 0.0;  // nothing but the rule
-  const simplify::ManifoldMesh result = simplify::collapse_quadrics(std::move(mesh), {.vertices = 40}, options, {});
+  const simplification::ManifoldMesh result = simplification::collapse_quadrics(std::move(mesh), {.vertices = 40}, options, {});
   // From end to end along edges that the mesh has.
   const auto edges = testing::directed_edges(result.mesh.triangles);
   const auto at = [&](Index source) {
@@ -228,11 +228,11 @@ TEST_P(Qslim, FeatureLinesSurvive) {
 TEST_P(Qslim, AClosedLineKeepsThreeEdges) {
   const Shape shape = testing::sphere(3, 1.0, 0.2);
   const auto [a, b, c] = shape.triangles[100];
-  simplify::QuadricCollapse options;
+  simplification::QuadricCollapse options;
   options.placement = GetParam();
   options.boundary_weight = 0.0;
-  const auto result = simplify::collapse_quadrics(
-      simplify::make_manifold(as_mesh(shape), {{a, b}, {b, c}, {c, a}}, {}, nullptr), {.vertices = 12}, options, {});
+  const auto result = simplification::collapse_quadrics(
+      simplification::make_manifold(as_mesh(shape), {{a, b}, {b, c}, {c, a}}, {}, nullptr), {.vertices = 12}, options, {});
   std::set<Index> on_line;
   for (Index v = 0; v < result.line.size(); ++v) {
     if (result.line[v][0] != kNoIndex) on_line.insert({v, result.line[v][0], result.line[v][1]});
@@ -242,14 +242,14 @@ TEST_P(Qslim, AClosedLineKeepsThreeEdges) {
 
 TEST_P(Qslim, LockedVerticesStay) {
   const Shape shape = testing::sphere(3, 1.0);
-  simplify::ManifoldMesh mesh = simplify::make_manifold(as_mesh(shape), {}, {}, nullptr);
+  simplification::ManifoldMesh mesh = simplification::make_manifold(as_mesh(shape), {}, {}, nullptr);
   for (Index v = 0; v < mesh.locked.size(); v += 10) mesh.locked[v] = 1;
   const std::size_t locked = (mesh.locked.size() + 9) / 10;
-  simplify::QuadricCollapse options;
+  simplification::QuadricCollapse options;
   options.placement = GetParam();
   options.must_reach = false;
-  const simplify::ManifoldMesh result =
-      simplify::collapse_quadrics(std::move(mesh), {.vertices = locked + 5}, options, {});
+  const simplification::ManifoldMesh result =
+      simplification::collapse_quadrics(std::move(mesh), {.vertices = locked + 5}, options, {});
   EXPECT_LT(result.source.size(), locked + 60);
   for (Index v = 0; v < shape.positions.size(); v += 10) {
     const auto found = std::ranges::find(result.source, v);
@@ -264,10 +264,10 @@ TEST_P(Qslim, RemovalWeightsHoldVertices) {
   const auto kept_of_weighted = [&](float weight) {
     std::vector<float> weights(n, 1.0f);
     for (std::size_t v = 0; v < n; v += 8) weights[v] = weight;
-    simplify::QuadricCollapse options;
+    simplification::QuadricCollapse options;
     options.placement = GetParam();
     options.removal_weight = weights;
-    const auto result = simplify::collapse_quadrics(simplify::make_manifold(as_mesh(shape), {}, {}, nullptr),
+    const auto result = simplification::collapse_quadrics(simplification::make_manifold(as_mesh(shape), {}, {}, nullptr),
                                                     {.vertices = n / 6}, options, {});
     return std::ranges::count_if(result.source, [](Index v) { return v % 8 == 0; });
   };
@@ -283,10 +283,10 @@ TEST_P(Qslim, HeavyVerticesStayWhereTheyAre) {
   const Shape shape = testing::sphere(3, 1.0, 0.2);
   std::vector<float> weights(shape.positions.size(), 1.0f);
   for (std::size_t v = 0; v < weights.size(); v += 16) weights[v] = 1e6f;
-  simplify::QuadricCollapse options;
+  simplification::QuadricCollapse options;
   options.placement = GetParam();
   options.removal_weight = weights;
-  const auto result = simplify::collapse_quadrics(simplify::make_manifold(as_mesh(shape), {}, {}, nullptr),
+  const auto result = simplification::collapse_quadrics(simplification::make_manifold(as_mesh(shape), {}, {}, nullptr),
                                                   {.vertices = weights.size() / 4}, options, {});
   std::size_t unmoved = 0;
   for (std::size_t v = 0; v < result.source.size(); ++v) {
@@ -393,12 +393,12 @@ TEST_P(Qslim, RandomSoupsStaySound) {
     }
     FeatureEdges features;
     for (Index i = 0; i < seed % 4; ++i) features.push_back({number(7, i, n), (number(7, i, n) + 1) % n});
-    simplify::QuadricCollapse options;
+    simplification::QuadricCollapse options;
     options.placement = GetParam();
     options.must_reach = false;
-    const auto before = simplify::make_manifold(soup, features, {}, nullptr);
-    simplify::ManifoldMesh copy = before;
-    const auto after = simplify::collapse_quadrics(std::move(copy), {.vertices = 1}, options, {});
+    const auto before = simplification::make_manifold(soup, features, {}, nullptr);
+    simplification::ManifoldMesh copy = before;
+    const auto after = simplification::collapse_quadrics(std::move(copy), {.vertices = 1}, options, {});
     const auto was = topology(before.mesh), is = topology(after.mesh);
     EXPECT_TRUE(is.is_manifold);
     EXPECT_EQ(is.repeated_faces, 0u);
@@ -407,8 +407,8 @@ TEST_P(Qslim, RandomSoupsStaySound) {
     EXPECT_EQ(is.components, was.components);
     EXPECT_EQ(is.border_loops, was.border_loops);
     EXPECT_EQ(std::ranges::count(after.locked, 1), std::ranges::count(before.locked, 1));
-    const std::size_t reachable = simplify::num_merged_vertices(after);
-    const std::size_t start = simplify::num_merged_vertices(before);
+    const std::size_t reachable = simplification::num_merged_vertices(after);
+    const std::size_t start = simplification::num_merged_vertices(before);
     for (std::size_t target = reachable; target <= start; target += 3) {
       EXPECT_EQ(simplify(soup, {.vertices = target}, features).mesh.positions.size(), target);
     }

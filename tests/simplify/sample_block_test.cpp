@@ -8,7 +8,7 @@
 #include "core/random.hpp"
 #include "shapelight/spatial/triangle_tree.hpp"
 
-namespace shapelight::simplify {
+namespace shapelight::simplification {
 namespace {
 
 Vec3 random_point(std::uint64_t stream, std::uint64_t id) {
@@ -82,4 +82,4 @@ TEST(LocalTriangle, QualityIsThatOfTheEquilateralOneAtMost) {
 }
 
 }  // namespace
-}  // namespace shapelight::simplify
+}  // namespace shapelight::simplification
