@@ -17,6 +17,10 @@ echo
 "$shapelight" render out/quickstart/fields.ply -o out/quickstart/sample.png --force \
   --color reflectance,segment,none --dots out/quickstart/sample.ply --width 1800 --height 800
 echo
+"$shapelight" simplify "$scan" -o out/quickstart/simplified.ply --ratio 5% --placement optimal --measure --force
+"$shapelight" render "$scan" out/quickstart/simplified.ply -o out/quickstart/simplified.png --force --width 1800 --height 800
+echo
 echo "the sample:  out/quickstart/sample.ply"
 echo "the picture: out/quickstart/sample.png (the scan by reflectance, by segments, and plain; the samples on top)"
+echo "the mesh:    out/quickstart/simplified.ply, a twentieth of the vertices; beside the scan in simplified.png"
 echo "the tool:    $shapelight --help"
