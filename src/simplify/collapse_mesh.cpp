@@ -43,6 +43,30 @@ std::size_t count_common(std::span<const Index> a, std::span<const Index> b) {
 
 }  // namespace
 
+// Would the removal of u into v make an edge or a face twice, once the copies of every junction are one?
+bool CollapseMesh::meets_another_copy(Index u, Index v) const {
+  const auto ring_u = ring(u), ring_v = ring(v);
+  const auto has_copy_of = [&](std::span<const Index> around, Index w) {
+    return std::any_of(around.begin(), around.end(),
+                       [&](Index x) { return x != w && x != u && junction_[x] == junction_[w]; });
+  };
+  for (std::size_t i = 0; i < ring_u.size(); ++i) {
+    const Index w = ring_u[i];
+    if (w == v) continue;
+    const bool v_joins = junction_[v] != kNoIndex, w_joins = junction_[w] != kNoIndex;
+    if (v_joins && w_joins) {
+      const bool is_last = i + 1 == ring_u.size();
+      const Index next = is_last ? ring_u[0] : ring_u[i + 1];
+      const bool has_face = !(is_last && vertices_[u].is(kOpen)) && next != v;
+      if (std::find(ring_v.begin(), ring_v.end(), w) == ring_v.end()) return true;
+      if (has_face && junction_[next] != kNoIndex) return true;
+    }
+    if (w_joins && (has_copy_of(ring_v, w) || has_copy_of(ring_u, w) || junction_[w] == junction_[v])) return true;
+    if (v_joins && has_copy_of(ring(w), v)) return true;
+  }
+  return false;
+}
+
 bool CollapseMesh::keeps_topology(Index u, Index v) const {
   const auto ring_u = ring(u), ring_v = ring(v);
   const bool u_open = vertices_[u].is(kOpen), v_open = vertices_[v].is(kOpen);
@@ -64,6 +88,7 @@ bool CollapseMesh::keeps_topology(Index u, Index v) const {
     if (is_next_on_line(v, beyond) || is_next_on_line(beyond, v)) return false;
     if (border_edge && ring_v.size() < 3) return false;
   }
+  if (!junction_.empty() && meets_another_copy(u, v)) return false;
   return count_common(ring_u, ring_v) == (border_edge ? 1u : 2u);
 }
 

@@ -52,6 +52,8 @@ class CollapseMesh {
   [[nodiscard]] const Vertex& vertex(Index v) const { return vertices_[v]; }
   [[nodiscard]] Point& point(Index v) { return points_[v]; }
   [[nodiscard]] const Point& point(Index v) const { return points_[v]; }
+  /// See ManifoldMesh::junction.
+  [[nodiscard]] Index junction(Index v) const { return junction_.empty() ? kNoIndex : junction_[v]; }
   [[nodiscard]] std::span<const Index> ring(Index v) const {
     return {arena_.data() + vertices_[v].ring, vertices_[v].size};
   }
@@ -89,6 +91,7 @@ class CollapseMesh {
   [[nodiscard]] ManifoldMesh finish(ManifoldMesh&& input, const RunContext& context) const;
 
  private:
+  [[nodiscard]] bool meets_another_copy(Index u, Index v) const;
   void sort_along_curve(std::span<const Vec3> positions, const RunContext& context);
   void add_quadrics(Index v, float boundary_weight);
   void replace(Index v, Index old_neighbor, Index new_neighbor);
@@ -101,6 +104,7 @@ class CollapseMesh {
   std::vector<Index> arena_;
   std::vector<std::array<Index, 2>> lines_;
   std::vector<Index> order_;  // vertex -> input vertex
+  std::vector<Index> junction_;
   std::vector<Index> merged_, gained_;
   std::size_t num_live_ = 0, num_faces_ = 0;
   Vec3 center_ = Vec3::Zero();

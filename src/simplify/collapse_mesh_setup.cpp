@@ -34,6 +34,9 @@ CollapseMesh::CollapseMesh(const ManifoldMesh& mesh, double boundary_weight, con
     vertices_[v].capacity = std::max(padded(wedges.at(v).size() + 1), kLeastCapacity);
     used += vertices_[v].capacity;
   }
+  for (const Index v : order_) {
+    if (!mesh.junction.empty()) junction_.push_back(mesh.junction[v]);
+  }
   arena_.reserve(used + used / 4);
   arena_.resize(used, kNoIndex);
   parallel::for_chunks(context, n, [&](std::size_t begin, std::size_t end) {
@@ -114,6 +117,7 @@ ManifoldMesh CollapseMesh::finish(ManifoldMesh&& input, const RunContext& contex
   ManifoldMesh result;
   result.source.resize(kept.size());
   result.locked.resize(kept.size());
+  result.junction.resize(input.junction.empty() ? 0 : kept.size());
   result.line.resize(kept.size());
   result.mesh.positions.resize(kept.size());
   parallel::for_chunks(context, kept.size(), [&](std::size_t begin, std::size_t end) {
@@ -121,6 +125,7 @@ ManifoldMesh CollapseMesh::finish(ManifoldMesh&& input, const RunContext& contex
       const Index v = kept[i], from = order_[v];
       result.source[i] = input.source[from];
       result.locked[i] = input.locked[from];
+      if (!result.junction.empty()) result.junction[i] = input.junction[from];
       result.line[i] = lines_[v];
       if (lines_[v][0] != kNoIndex) result.line[i] = {number[lines_[v][0]], number[lines_[v][1]]};
       result.mesh.positions[i] = input.mesh.positions[from];

@@ -57,6 +57,7 @@ LiveMesh::LiveMesh(ManifoldMesh&& mesh)
     : position(std::move(mesh.mesh.positions)),
       source(std::move(mesh.source)),
       locked(std::move(mesh.locked)),
+      junction(std::move(mesh.junction)),
       face_(std::move(mesh.mesh.triangles)),
       stars_(position.size(), face_),
       line_edges_(position.size(), {kNoIndex, kNoIndex}),
@@ -112,6 +113,21 @@ bool LiveMesh::may_lose_face(Index v) const {
   });
 }
 
+bool LiveMesh::meets_another_copy(Index v, Index w, Index removed) const {
+  if (junction.empty() || (junction[v] == kNoIndex && junction[w] == kNoIndex)) return false;
+  if (junction[v] != kNoIndex && junction[w] != kNoIndex) return true;  // another sheet may have that edge
+  return junction[v] != kNoIndex ? has_copy_near(w, v, removed) : has_copy_near(v, w, removed);
+}
+
+bool LiveMesh::has_copy_near(Index v, Index copied, Index removed) const {
+  for (const Index f : stars_[v]) {
+    for (const Index x : face_[f]) {
+      if (x != copied && x != removed && junction[x] == junction[copied]) return true;
+    }
+  }
+  return false;
+}
+
 bool LiveMesh::may_collapse(Index u, Index v) const {
   if (locked[u]) return false;
   if (is_on_line(u)) {
@@ -129,7 +145,10 @@ bool LiveMesh::may_collapse(Index u, Index v) const {
   }
   for (const Index f : stars_[u]) {  // link condition: no common neighbour but the apexes
     for (const Index w : face_[f]) {
-      if (w == u || w == v || w == apex[0] || w == apex[1]) continue;
+      if (w == u || w == v) continue;
+      if (meets_another_copy(v, w, u)) return false;
+      if (!junction.empty() && junction[w] != kNoIndex && has_copy_near(u, w, kNoIndex)) return false;
+      if (w == apex[0] || w == apex[1]) continue;
       if (faces_at_edge(w, v)[0] != kNoIndex) return false;
     }
   }
@@ -175,6 +194,7 @@ bool LiveMesh::may_flip(Index f, Index g, std::array<Index, 4>& quad) const {
     const Index c = t[(i + 2) % 3];
     const Index d = opposite(face_[g], a, b);
     if (c == d || is_line_edge(a, b) || faces_at_edge(c, d)[0] != kNoIndex) return false;
+    if (meets_another_copy(c, d, kNoIndex)) return false;
     if (!may_lose_face(a) || !may_lose_face(b)) return false;
     quad = {a, b, c, d};
     return true;
@@ -201,6 +221,7 @@ ManifoldMesh LiveMesh::compact() && {
     out.mesh.positions.push_back(position[v]);
     out.source.push_back(source[v]);
     out.locked.push_back(locked[v]);
+    if (!junction.empty()) out.junction.push_back(junction[v]);
   }
   out.line.resize(out.source.size(), {kNoIndex, kNoIndex});
   for (Index v = 0; v < position.size(); ++v) {

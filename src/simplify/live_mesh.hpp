@@ -38,6 +38,7 @@ class LiveMesh {
   std::vector<Vec3> position;
   std::vector<Index> source;  ///< per vertex: input vertex
   std::vector<std::uint8_t> locked;
+  std::vector<Index> junction;  ///< see ManifoldMesh
 
   [[nodiscard]] std::size_t num_vertices() const { return position.size(); }  ///< dead ones included
   [[nodiscard]] std::size_t num_faces() const { return face_.size(); }        ///< dead ones included
@@ -79,6 +80,10 @@ class LiveMesh {
  private:
   /// Would one face less leave v a fan, of two faces in the inside of the surface at least and of one on its border?
   [[nodiscard]] bool may_lose_face(Index v) const;
+
+  /// Would an edge from v to w exist twice, once the copies of every junction are one?
+  [[nodiscard]] bool meets_another_copy(Index v, Index w, Index removed) const;
+  [[nodiscard]] bool has_copy_near(Index v, Index copied, Index removed) const;
 
   std::vector<Triangle> face_;
   StarTable stars_;

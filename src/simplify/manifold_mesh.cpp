@@ -161,6 +161,12 @@ ManifoldMesh make_manifold(const TriangleMesh& mesh, const FeatureEdges& feature
   result.mesh.triangles = std::move(sheets.triangles);
   result.source = std::move(sheets.source);
   result.locked = std::move(sheets.locked);
+  if (met.locked_vertices > 0) {
+    result.junction.resize(result.source.size());
+    for (std::size_t v = 0; v < result.source.size(); ++v) {
+      result.junction[v] = result.locked[v] != 0 ? result.source[v] : kNoIndex;
+    }
+  }
   result.mesh.positions.resize(result.source.size());
   parallel::for_chunks(context, result.source.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) result.mesh.positions[v] = mesh.positions[result.source[v]];

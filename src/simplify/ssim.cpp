@@ -56,6 +56,7 @@ ManifoldMesh along_morton_curve(const ManifoldMesh& mesh, const RunContext& cont
     sorted.mesh.positions.push_back(mesh.mesh.positions[v]);
     sorted.source.push_back(mesh.source[v]);
     sorted.locked.push_back(mesh.locked[v]);
+    if (!mesh.junction.empty()) sorted.junction.push_back(mesh.junction[v]);
     sorted.line.push_back(mesh.line[v]);
   }
   const auto renumber = [&](Index& v) { v = v == kNoIndex ? kNoIndex : place[v]; };

@@ -51,7 +51,7 @@ struct SimplifyOptions {
   SimplifyMethod method = SimplifyMethod::Ssim;
   SsimOptions ssim;               ///< qslim reads its placement and its boundary_weight
   double local_weight = 0.65;     ///< [1] T of the samples that guide ssim and ssim-paper
-  double noise_threshold = 0.05;  ///< [mean edge lengths] more noise: ssim measures against a denoised surface
+  double noise_threshold = 0.1;  ///< [mean edge lengths] more noise: ssim measures against a denoised surface
   bool measure = false;           ///< measure the distance between input and result
   FieldsOptions fields;           ///< of the samples
 
