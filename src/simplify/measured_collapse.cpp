@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "core/parallel.hpp"
@@ -82,7 +83,7 @@ class RemovalTrial {
   double energy_before_ = 0.0;
 };
 
-Removal best_removal(const MeasuredMesh& measured, Index u, Scratch& scratch) {
+Removal best_removal(const MeasuredMesh& measured, Index u, bool may_fold, Scratch& scratch) {
   const LiveMesh& mesh = measured.mesh;
   Removal best;
   if (!mesh.is_alive(u) || mesh.locked[u]) return best;
@@ -93,7 +94,7 @@ Removal best_removal(const MeasuredMesh& measured, Index u, Scratch& scratch) {
     if (!mesh.may_collapse(u, v)) continue;
     const double after = trial.energy_into(v);
     const float cost = static_cast<float>(after - trial.energy_before() + trial.line_cost(v));
-    if (cost < best.cost) best = {v, cost, static_cast<float>(after)};
+    if (cost < best.cost && (may_fold || !folds_faces(mesh, u, v))) best = {v, cost, static_cast<float>(after)};
   }
   return best;
 }
@@ -114,7 +115,7 @@ class Collapser {
         removal_(measured.mesh.num_vertices()),
         guarded_(measured.mesh.num_vertices(), 0),
         blocked_(measured.mesh.num_vertices(), 0) {
-    for (Index v = 0; v < removal_.size(); ++v) dirty_.push_back(v);
+    evaluate_all();
   }
 
   bool run(std::size_t num_to_remove) {
@@ -123,13 +124,22 @@ class Collapser {
       context_.report(1.0 - static_cast<double>(num_to_remove) / static_cast<double>(all));
       evaluate();
       const std::vector<Index> chosen = choose(num_to_remove);
-      if (chosen.empty()) return false;
+      if (chosen.empty()) {
+        if (std::exchange(may_fold_, true)) return false;
+        evaluate_all();
+        continue;
+      }
       num_to_remove -= commit(chosen);
     }
     return true;
   }
 
  private:
+  void evaluate_all() {
+    dirty_.resize(removal_.size());
+    std::iota(dirty_.begin(), dirty_.end(), Index{0});
+  }
+
   void evaluate() {
     parallel::for_chunks(
         context_, dirty_.size(),
@@ -137,7 +147,7 @@ class Collapser {
           Scratch scratch;
           for (std::size_t i = begin; i < end; ++i) {
             const Index u = dirty_[i];
-            removal_[u] = best_removal(measured_, u, scratch);
+            removal_[u] = best_removal(measured_, u, may_fold_, scratch);
             guarded_[u] = 0;
             const std::span<const float> weight = options_.removal_weight;
             if (!weight.empty() && removal_[u].cost > 0.0F) removal_[u].cost *= weight[measured_.mesh.source[u]];
@@ -230,7 +240,7 @@ class Collapser {
       const Index v = removal_[p.u].into;
       touched.insert(touched.end(), p.ring.begin(), p.ring.end());
       removal_[p.u] = {};
-      if (!measured_.mesh.may_collapse(p.u, v)) {
+      if (!measured_.mesh.may_collapse(p.u, v) || (!may_fold_ && folds_faces(measured_.mesh, p.u, v))) {
         touched.push_back(p.u);
         continue;
       }
@@ -274,6 +284,7 @@ class Collapser {
   std::vector<Removal> removal_;  // per vertex: the best way to remove it
   std::vector<std::uint8_t> guarded_, blocked_;
   std::vector<Index> dirty_, marked_;
+  bool may_fold_ = false;  // once nothing else is left
 };
 
 }  // namespace

@@ -23,6 +23,26 @@ struct Scratch {
   std::vector<Index> ids;
 };
 
+// Would a new face lie folded on the other or, where the old one did not, on the face outside across an edge?
+bool flip_folds(const LiveMesh& mesh, const std::array<Index, 4>& quad, const std::array<Index, 2>& faces,
+                const std::array<Vec3, 2>& before, const std::array<Vec3, 2>& after) {
+  if (after[0].dot(after[1]) < kFolded) return true;
+  const auto [a, b, c, d] = quad;
+  struct Side {
+    Index from, to;
+    int old_face, new_face;
+  };
+  for (const Side& side : {Side{b, c, 0, 0}, Side{c, a, 0, 1}, Side{a, d, 1, 1}, Side{d, b, 1, 0}}) {
+    for (const Index g : mesh.faces_at_edge(side.from, side.to)) {
+      if (g == kNoIndex || g == faces[0] || g == faces[1]) continue;
+      const Vec3& origin = mesh.position[side.from];
+      const Vec3 normal = triangle_with(mesh, g, kNoIndex, origin, origin).normal;
+      if (normal.dot(after[side.new_face]) < kFolded && normal.dot(before[side.old_face]) >= kFolded) return true;
+    }
+  }
+  return false;
+}
+
 // Energy that the flip saves; 0 when it is not possible. Leaves the new places of the samples in `scratch`.
 double gain_of(const MeasuredMesh& measured, Index f, Index g, Scratch& scratch) {
   const LiveMesh& mesh = measured.mesh;
@@ -51,7 +71,8 @@ double gain_of(const MeasuredMesh& measured, Index f, Index g, Scratch& scratch)
   scratch.block.offer(new_f, 0);
   scratch.block.offer(new_g, 1);
   const double gain = before - scratch.block.total();
-  return gain > kMinGain * before ? gain : 0.0;
+  if (!(gain > kMinGain * before)) return 0.0;
+  return flip_folds(mesh, quad, {f, g}, {old_f.normal, old_g.normal}, {new_f.normal, new_g.normal}) ? 0.0 : gain;
 }
 
 // All flips that gain, best first. Every edge is seen from its face of lower index.

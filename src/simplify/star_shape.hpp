@@ -9,6 +9,9 @@ namespace shapelight::simplification {
 [[nodiscard]] LocalTriangle triangle_with(const LiveMesh& mesh, Index face, Index v, const Vec3& place,
                                           const Vec3& origin);
 
+/// Cosine between the normals of faces that lie on each other. Stricter than the check of the result, which rounds.
+inline constexpr double kFolded = -0.89;
+
 /// How much a face may turn in one step, and how thin it may get, unless its star was as thin before.
 struct ShapeLimits {
   double min_cosine = 0.2;
@@ -29,6 +32,11 @@ struct StarShape {
   [[nodiscard]] static bool keeps_shape(const Vec3& before, const LocalTriangle& after, double worst,
                                         const ShapeLimits& limits);
 };
+
+/// Would removing u into v leave a face around v, or one beside those, folded onto all its neighbours? Such a face has
+/// been turned over. Per step faces turn by less than a right angle, but turns add up; only a look at what lies around
+/// a face tells that it has come to lie on it. u == v: the faces around v as they are.
+[[nodiscard]] bool folds_faces(const LiveMesh& mesh, Index u, Index v);
 
 /// Splits vertices into classes of which no two members are neighbours: those of a class can be worked on at once.
 /// Greedy in the order given; classes keep that order.

@@ -14,6 +14,7 @@ namespace {
 constexpr double kFolded = -0.9;   // cosine between the normals of faces that lie on each other
 constexpr double kAgainst = -0.5;  // cosine from which a face looks against the input
 constexpr double kNoArea = 1e-9;   // twice the area over the longest edge squared: no normal to speak of
+constexpr double kOver = 0.25;     // of its height over the opposite edge that a corner goes beyond that edge
 constexpr int kMaxPasses = 8;
 
 Vec3 normal_of(const std::vector<Vec3>& positions, const Triangle& t) {
@@ -107,24 +108,26 @@ std::optional<Flip> best_flip(const TriangleMesh& mesh, const EdgeUses& edges, I
   return best;
 }
 
-// Where no flip helps, a corner of the face moves towards the middle of its neighbours.
+// Where no flip helps, a corner of the face moves.
 class Relocation {
  public:
   Relocation(const TriangleMesh& reference, SimplifiedMesh& result, Placement placement)
       : reference_(reference), result_(result), placement_(placement) {}
 
-  // Moves the corner that leaves the faces around it best, if any leaves none of them folded on all its neighbours.
+  // Makes the move that leaves the faces around best, if any leaves none of them folded on all its neighbours.
   template <class IsFixed>
   void relocate(const EdgeUses& edges, const Triangle& face, IsFixed&& is_fixed) {
     std::optional<Move> best;
     double best_fold = kFolded;
-    for (const Index v : face) {
-      const std::optional<Move> move = is_fixed(v) ? std::nullopt : move_of(edges, v);
-      if (!move) continue;
-      const double fold = fold_after(edges, v, *move);
-      if (fold <= best_fold) continue;
-      best_fold = fold;
-      best = move;
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (is_fixed(face[k])) continue;
+      const std::vector<Index> star = star_of(face[k]), around = with_neighbors(edges, star);
+      for (const Move& move : moves(edges, face, k, star)) {
+        const double fold = fold_after(edges, around, move);
+        if (fold <= best_fold) continue;
+        best_fold = fold;
+        best = move;
+      }
     }
     if (!best) return;
     result_.mesh.positions[best->vertex] = best->place;
@@ -142,7 +145,7 @@ class Relocation {
     Vec3 place;
   };
 
-  [[nodiscard]] std::vector<Index> star(Index v) const {
+  [[nodiscard]] std::vector<Index> star_of(Index v) const {
     std::vector<Index> faces;
     for (Index f = 0; f < result_.mesh.triangles.size(); ++f) {
       const Triangle& t = result_.mesh.triangles[f];
@@ -151,31 +154,53 @@ class Relocation {
     return faces;
   }
 
-  // Border vertices go along the border; those at edges of more than two faces stay.
-  std::optional<Move> move_of(const EdgeUses& edges, Index v) {
+  [[nodiscard]] std::vector<Index> with_neighbors(const EdgeUses& edges, std::vector<Index> faces) const {
+    for (std::size_t i = 0, count = faces.size(); i < count; ++i) {
+      const Triangle& t = result_.mesh.triangles[faces[i]];
+      for (std::size_t k = 0; k < 3; ++k) {
+        for (const EdgeUse& use : edges.faces_at(t[k], t[(k + 1) % 3])) faces.push_back(use.face);
+      }
+    }
+    std::sort(faces.begin(), faces.end());
+    faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+    return faces;
+  }
+
+  // Towards the middle of the neighbours, on a border of those along it, and back over the opposite edge of the face.
+  // A vertex at edges of more than two faces stays.
+  std::vector<Move> moves(const EdgeUses& edges, const Triangle& face, std::size_t corner,
+                          std::span<const Index> star) {
+    const std::vector<Vec3>& p = result_.mesh.positions;
+    const Index v = face[corner];
     Vec3 sum[2] = {Vec3::Zero(), Vec3::Zero()};  // of the neighbours along borders, of all
     double count[2] = {0.0, 0.0};
-    for (const Index f : star(v)) {
+    for (const Index f : star) {
       for (const Index w : result_.mesh.triangles[f]) {
         const std::size_t sides = w == v ? 0 : edges.faces_at(v, w).size();
         if (sides > 2) return {};
-        if (sides == 1) sum[0] += result_.mesh.positions[w], count[0] += 1.0;
-        if (sides > 0)
-          sum[1] += result_.mesh.positions[w] / static_cast<double>(sides),
-              count[1] += 1.0 / static_cast<double>(sides);
+        if (sides == 1) sum[0] += p[w], count[0] += 1.0;
+        if (sides > 0) sum[1] += p[w] / static_cast<double>(sides), count[1] += 1.0 / static_cast<double>(sides);
       }
     }
     const std::size_t kind = count[0] > 0.0 ? 0 : 1;
-    const Vec3 place = sum[kind] / count[kind];
-    if (placement_ == Placement::Optimal) return Move{v, kNoIndex, place};
-    prepare_places();
-    std::vector<Neighbor> near;
-    places_->nearest(place, 64, near);
-    for (const Neighbor& n : near) {
-      const Index source = place_of_[n.index];
-      if (used_[source] == 0) return Move{v, source, reference_.positions[source]};
+    const Vec3 &a = p[face[(corner + 1) % 3]], &b = p[face[(corner + 2) % 3]];
+    const Vec3 along = (b - a).normalized();
+    const Vec3 height = (p[v] - a) - along.dot(p[v] - a) * along;
+    const Vec3 places[2] = {sum[kind] / count[kind], 0.5 * (a + b) - kOver * height};
+    std::vector<Move> found;
+    for (const Vec3& place : places) {
+      if (placement_ == Placement::Optimal) {
+        found.push_back({v, kNoIndex, place});
+        continue;
+      }
+      prepare_places();
+      places_->nearest(place, 64, near_);
+      for (const Neighbor& n : near_) {
+        const Index source = place_of_[n.index];
+        if (used_[source] == 0) found.push_back({v, source, reference_.positions[source]});
+      }
     }
-    return {};
+    return found;
   }
 
   // Input vertices in faces, and which of them the result has.
@@ -194,12 +219,12 @@ class Relocation {
     for (const Index source : result_.source_vertex) used_[source] = 1;
   }
 
-  // The least, over the faces around v, of the largest cosine with a neighbour.
-  [[nodiscard]] double fold_after(const EdgeUses& edges, Index v, const Move& move) {
+  // The least, over these faces, of the largest cosine with a neighbour.
+  [[nodiscard]] double fold_after(const EdgeUses& edges, std::span<const Index> faces, const Move& move) {
     std::vector<Vec3>& positions = result_.mesh.positions;
-    const Vec3 before = std::exchange(positions[v], move.place);
+    const Vec3 before = std::exchange(positions[move.vertex], move.place);
     double worst = 1.0;
-    for (const Index f : star(v)) {
+    for (const Index f : faces) {
       const Triangle& t = result_.mesh.triangles[f];
       const Vec3 normal = normal_of(positions, t);
       double best = -1.0;
@@ -210,7 +235,7 @@ class Relocation {
       }
       worst = std::min(worst, normal.isZero() ? -1.0 : best);
     }
-    positions[v] = before;
+    positions[move.vertex] = before;
     return worst;
   }
 
@@ -220,6 +245,7 @@ class Relocation {
   std::optional<KdTree> places_;
   std::vector<Index> place_of_;     // point of the tree -> input vertex
   std::vector<std::uint8_t> used_;  // per input vertex
+  std::vector<Neighbor> near_;
 };
 
 }  // namespace

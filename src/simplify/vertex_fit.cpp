@@ -172,6 +172,20 @@ double StarTrial::energy_at(const Vec3& place, Index source) {
   return block_.total() + line_energy_at(place);
 }
 
+bool StarTrial::force(MeasuredMesh& measured, Index v, const Vec3& place) {
+  begin(measured, v);
+  place_ = place;
+  block_.reset();
+  std::int32_t id = 0;
+  for (const Index f : measured.mesh.star(v)) {
+    block_.offer(triangle_with(measured.mesh, f, v, place, measured.mesh.position[v]), id++);
+  }
+  const auto samples_end = block_.best.begin() + static_cast<std::ptrdiff_t>(block_.size());
+  if (std::find(block_.best.begin(), samples_end, -1) != samples_end) return false;
+  accept(measured);
+  return true;
+}
+
 double StarTrial::line_energy_at(const Vec3& place) const {
   const LiveMesh& mesh = measured_->mesh;
   if (!mesh.is_on_line(v_)) return 0.0;
@@ -227,16 +241,45 @@ double InputSurface::error_of_removal(const LiveMesh& mesh, Index u, Index v) co
   return error;
 }
 
+std::vector<std::size_t> put_folded_back(MeasuredMesh& measured, std::span<const Index> vertices,
+                                         std::span<const Vec3> before, const RunContext& context) {
+  const LiveMesh& mesh = measured.mesh;
+  std::vector<std::size_t> back;
+  StarTrial trial;
+  while (true) {  // where one has gone back, another's faces may fold
+    std::vector<std::uint8_t> folded(vertices.size(), 0);
+    parallel::for_chunks(
+        context, vertices.size(),
+        [&](std::size_t begin, std::size_t end) {
+          for (std::size_t i = begin; i < end; ++i) {
+            const Index v = vertices[i];
+            folded[i] = mesh.position[v] != before[i] && folds_faces(mesh, v, v);
+          }
+        },
+        kChunk);
+    const std::size_t so_far = back.size();
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+      if (folded[i] != 0 && trial.force(measured, vertices[i], before[i])) back.push_back(i);
+    }
+    if (back.size() == so_far) return back;
+  }
+}
+
 void fit_vertices(MeasuredMesh& measured, std::span<const Index> vertices, double normal_weight, InputSurface& input,
                   const RunContext& context) {
   for (const std::vector<Index>& independent : independent_classes(measured.mesh, vertices)) {
+    std::vector<Vec3> before(independent.size());
     parallel::for_chunks(
         context, independent.size(),
         [&](std::size_t begin, std::size_t end) {
           StarTrial trial;
-          for (std::size_t i = begin; i < end; ++i) fit(measured, independent[i], normal_weight, input, trial);
+          for (std::size_t i = begin; i < end; ++i) {
+            before[i] = measured.mesh.position[independent[i]];
+            fit(measured, independent[i], normal_weight, input, trial);
+          }
         },
         kChunk);
+    (void)put_folded_back(measured, independent, before, context);
   }
 }
 

@@ -35,6 +35,8 @@ class StarTrial {
   [[nodiscard]] double energy_now() const { return energy_now_; }
   /// Moves the vertex to the place that energy_at() was last asked about.
   void accept(MeasuredMesh& measured) const;
+  /// Moves v to `place` whatever it costs; not when no face there would have an area.
+  [[nodiscard]] bool force(MeasuredMesh& measured, Index v, const Vec3& place);
 
  private:
   double line_energy_at(const Vec3& place) const;
@@ -68,6 +70,12 @@ class InputSurface {
   std::vector<Search> last_;  ///< per vertex: a start for the next one, and often its answer
   const TriangleMesh& surface_;
 };
+
+/// Puts vertices of one class that have moved at once back to the places `before` where that has folded faces; a move
+/// alone cannot tell, for the far vertex of a face outside may move too. Returns which ones, by their place in
+/// `vertices`.
+std::vector<std::size_t> put_folded_back(MeasuredMesh& measured, std::span<const Index> vertices,
+                                         std::span<const Vec3> before, const RunContext& context);
 
 /// Moves each of these vertices to where its samples want it, class by class. Locked ones stay.
 void fit_vertices(MeasuredMesh& measured, std::span<const Index> vertices, double normal_weight, InputSurface& input,

@@ -81,15 +81,22 @@ std::size_t move_vertices(MeasuredMesh& measured, InputPlaces& places, double no
   std::size_t moves = 0;
   for (const std::vector<Index>& independent : independent_classes(mesh, movable)) {
     std::vector<Index> left(independent.size(), kNoIndex);
+    std::vector<Vec3> before(independent.size());
     parallel::for_chunks(
         context, independent.size(),
         [&](std::size_t begin, std::size_t end) {
           StarTrial trial;
           for (std::size_t i = begin; i < end; ++i) {
+            before[i] = mesh.position[independent[i]];
             left[i] = move(measured, places, independent[i], normal_weight, trial);
           }
         },
         kChunk);
+    for (const std::size_t i : put_folded_back(measured, independent, before, context)) {
+      Index& source = measured.mesh.source[independent[i]];
+      places.taken[source] = 0;
+      source = std::exchange(left[i], kNoIndex);
+    }
     for (const Index w : left) {  // a place that was left is free for the next class on
       if (w == kNoIndex) continue;
       places.taken[w] = 0;

@@ -185,6 +185,22 @@ TEST(TurnedFaces, AVertexOfThreeFacesMovesInPlaceOfAFlip) {
   EXPECT_EQ(result.mesh.positions[3], Vec3(1.0 / 3.0, 1.0 / 3.0, 0.0));
 }
 
+TEST(TurnedFaces, AnEarFoldedInwardsGoesBackOverItsEdge) {
+  // Vertex 4 of face (1, 4, 2), which has no other neighbour than (0, 1, 2), should be on the other side of edge 1-2.
+  const TriangleMesh input{{{0, 0, 0}, {1, -1, 0}, {1, 1, 0}, {1.3, 0.2, 0}, {1.5, 0, 0}},
+                           {{0, 1, 2}, {1, 3, 2}, {1, 4, 3}, {3, 4, 2}}};
+  const SimplifiedMesh reference = identity(input);
+  SimplifiedMesh ear = identity({{{0, 0, 0}, {1, -1, 0}, {1, 1, 0}, {}, {0.6, 0, 0}}, {{0, 1, 2}, {1, 4, 2}}});
+  ASSERT_EQ(ear.source_vertex.back(), 4u);
+  const FeatureEdges around = {{0, 1}, {1, 2}, {2, 0}};  // no flip
+  SimplifiedMesh free = ear;
+  EXPECT_EQ(unfold_faces(reference.mesh, free, Placement::Optimal, around, {}), 0u);
+  EXPECT_LT((free.mesh.positions[3] - Vec3(1.1, 0, 0)).norm(), 1e-12);
+  EXPECT_EQ(unfold_faces(reference.mesh, ear, Placement::Input, around, {}), 0u);
+  EXPECT_EQ(ear.source_vertex[3], 3u);  // the nearest input vertex there that is not taken
+  EXPECT_EQ(ear.mesh.positions[3], input.positions[3]);
+}
+
 TEST(TurnedFaces, NothingChangesWhereNothingIsTurned) {
   const SimplifiedMesh whole = identity(mesh_of(sphere(3, 1.0, 0.2)));
   SimplifiedMesh same = whole;
