@@ -116,13 +116,17 @@ std::vector<std::array<Index, 2>> crowded_edges(const SimplifiedMesh& mesh, cons
 
 void check_edges(const SimplifiedMesh& reference, const SimplifiedMesh& result, const EdgeUses& edges_in,
                  const EdgeUses& edges_out) {
-  const auto before = crowded_edges(reference, edges_in);
-  for (const auto& edge : crowded_edges(result, edges_out)) {
-    if (!std::binary_search(before.begin(), before.end(), edge)) {
-      throw PostconditionFailed(
-          fmt::format("more than two faces at the edge from input vertex {} to {}, where the input has none or two",
-                      edge[0], edge[1]));
-    }
+  // The ends of such an edge may have moved, so only their number tells.
+  const auto before = crowded_edges(reference, edges_in), after = crowded_edges(result, edges_out);
+  if (after.size() > before.size()) {
+    const auto fresh = std::find_if(after.begin(), after.end(), [&](const std::array<Index, 2>& edge) {
+      return !std::binary_search(before.begin(), before.end(), edge);
+    });
+    const auto& [a, b] = fresh == after.end() ? after.front() : *fresh;
+    throw PostconditionFailed(
+        fmt::format("{} edges with more than two faces, expected at most the input's {}; one is "
+                    "from input vertex {} to {}",
+                    after.size(), before.size(), a, b));
   }
   const Topology in = topology_of(reference.mesh, edges_in), out = topology_of(result.mesh, edges_out);
   if (out.euler != in.euler) {
@@ -149,7 +153,7 @@ void check_result(const SimplifiedMesh& reference, const SimplifiedMesh& result,
   context.check();
   check_edges(reference, result, edges_in, edges_out);
   const std::vector<Index> turned = turned_faces(reference.mesh, result.mesh, edges_out, context);
-  if (!turned.empty()) {
+  if (!turned.empty() && turned.size() > turned_faces(reference.mesh, reference.mesh, edges_in, context).size()) {
     throw PostconditionFailed(
         fmt::format("face {} is turned over: it looks against its neighbours and the input", turned.front()));
   }

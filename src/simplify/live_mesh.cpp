@@ -194,7 +194,7 @@ bool LiveMesh::may_flip(Index f, Index g, std::array<Index, 4>& quad) const {
     const Index c = t[(i + 2) % 3];
     const Index d = opposite(face_[g], a, b);
     if (c == d || is_line_edge(a, b) || faces_at_edge(c, d)[0] != kNoIndex) return false;
-    if (meets_another_copy(c, d, kNoIndex)) return false;
+    if (meets_another_copy(a, b, kNoIndex) || meets_another_copy(c, d, kNoIndex)) return false;
     if (!may_lose_face(a) || !may_lose_face(b)) return false;
     quad = {a, b, c, d};
     return true;

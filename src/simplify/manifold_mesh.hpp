@@ -16,8 +16,8 @@ struct ManifoldMesh {
   TriangleMesh mesh;
   std::vector<Index> source;         ///< per vertex: input vertex
   std::vector<std::uint8_t> locked;  ///< per vertex: may be neither removed nor moved (corner of lines, junction)
-  /// Per vertex, or empty where sheets meet nowhere: the input vertex whose copies become one again in the end; kNoIndex
-  /// for all others. Collapses make no edge and no face that another copy has.
+  /// Per vertex, or empty where sheets meet nowhere: the input vertex whose copies become one again in the end;
+  /// kNoIndex for all others. Collapses make no edge and no face that another copy has.
   std::vector<Index> junction;
   /// Per vertex on a line (border or feature edges): its two neighbours along it; kNoIndex twice elsewhere. A vertex
   /// on a line collapses along it only. Line ends and junctions are locked.

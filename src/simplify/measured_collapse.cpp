@@ -15,6 +15,7 @@ constexpr std::size_t kChunk = 64;    // vertices per chunk: an evaluation takes
 constexpr double kRoundShare = 0.25;  // of what is left to remove, per round
 constexpr double kGuardFactor = 1.5;  // backward error that a removal may cost, in units of its forward error
 constexpr ShapeLimits kLimits{.min_cosine = 0.2, .min_quality = 0.02};
+constexpr ShapeLimits kLastResort{.min_cosine = 0.0, .min_quality = 0.0};  // when nothing else is left to remove
 
 struct Removal {
   Index into = kNoIndex;
@@ -31,8 +32,8 @@ struct Scratch {
 // What the star of u becomes when u is removed into v. Faces of u that hold v vanish; `kept` gets the others.
 class RemovalTrial {
  public:
-  RemovalTrial(const MeasuredMesh& measured, Index u, Scratch& scratch)
-      : measured_(measured), u_(u), scratch_(scratch) {
+  RemovalTrial(const MeasuredMesh& measured, Index u, bool last_resort, Scratch& scratch)
+      : measured_(measured), u_(u), last_resort_(last_resort), scratch_(scratch) {
     scratch.shape.measure(measured.mesh, u);
     energy_before_ = measured.gather(measured.mesh.star(u), measured.mesh.position[u], scratch.block, scratch.ids);
   }
@@ -50,8 +51,8 @@ class RemovalTrial {
       if (t[0] == v || t[1] == v || t[2] == v) continue;
       const LocalTriangle after = triangle_with(mesh, f, u_, mesh.position[v], origin);
       const auto source = [&](int k) { return mesh.source[t[k] == u_ ? v : t[k]]; };
-      if (!scratch_.shape.keeps(i, after, kLimits) ||
-          !measured_.agrees_with_input(after.normal, source(0), source(1), source(2))) {
+      if (!scratch_.shape.keeps(i, after, last_resort_ ? kLastResort : kLimits) ||
+          !(last_resort_ || measured_.agrees_with_input(after.normal, source(0), source(1), source(2)))) {
         return std::numeric_limits<double>::infinity();
       }
       scratch_.block.offer(after, static_cast<std::int32_t>(scratch_.kept.size()));
@@ -79,22 +80,23 @@ class RemovalTrial {
  private:
   const MeasuredMesh& measured_;
   Index u_;
+  bool last_resort_;
   Scratch& scratch_;
   double energy_before_ = 0.0;
 };
 
-Removal best_removal(const MeasuredMesh& measured, Index u, bool may_fold, Scratch& scratch) {
+Removal best_removal(const MeasuredMesh& measured, Index u, bool last_resort, Scratch& scratch) {
   const LiveMesh& mesh = measured.mesh;
   Removal best;
   if (!mesh.is_alive(u) || mesh.locked[u]) return best;
   mesh.neighbors(u, scratch.ring);
   std::sort(scratch.ring.begin(), scratch.ring.end());  // ties go to the smallest index
-  RemovalTrial trial(measured, u, scratch);
+  RemovalTrial trial(measured, u, last_resort, scratch);
   for (const Index v : scratch.ring) {
     if (!mesh.may_collapse(u, v)) continue;
     const double after = trial.energy_into(v);
     const float cost = static_cast<float>(after - trial.energy_before() + trial.line_cost(v));
-    if (cost < best.cost && (may_fold || !folds_faces(mesh, u, v))) best = {v, cost, static_cast<float>(after)};
+    if (cost < best.cost && (last_resort || !folds_faces(mesh, u, v))) best = {v, cost, static_cast<float>(after)};
   }
   return best;
 }
@@ -125,7 +127,7 @@ class Collapser {
       evaluate();
       const std::vector<Index> chosen = choose(num_to_remove);
       if (chosen.empty()) {
-        if (std::exchange(may_fold_, true)) return false;
+        if (std::exchange(last_resort_, true)) return false;
         evaluate_all();
         continue;
       }
@@ -147,7 +149,7 @@ class Collapser {
           Scratch scratch;
           for (std::size_t i = begin; i < end; ++i) {
             const Index u = dirty_[i];
-            removal_[u] = best_removal(measured_, u, may_fold_, scratch);
+            removal_[u] = best_removal(measured_, u, last_resort_, scratch);
             guarded_[u] = 0;
             const std::span<const float> weight = options_.removal_weight;
             if (!weight.empty() && removal_[u].cost > 0.0F) removal_[u].cost *= weight[measured_.mesh.source[u]];
@@ -221,7 +223,7 @@ class Collapser {
         [&](std::size_t begin, std::size_t end) {
           for (std::size_t i = begin; i < end; ++i) {
             Scratch scratch;
-            RemovalTrial trial(measured_, chosen[i], scratch);
+            RemovalTrial trial(measured_, chosen[i], last_resort_, scratch);
             (void)trial.energy_into(removal_[chosen[i]].into);
             measured_.mesh.neighbors(chosen[i], scratch.ring);
             prepared[i] = {chosen[i], std::move(scratch.block), std::move(scratch.ids), std::move(scratch.kept),
@@ -240,7 +242,7 @@ class Collapser {
       const Index v = removal_[p.u].into;
       touched.insert(touched.end(), p.ring.begin(), p.ring.end());
       removal_[p.u] = {};
-      if (!measured_.mesh.may_collapse(p.u, v) || (!may_fold_ && folds_faces(measured_.mesh, p.u, v))) {
+      if (!measured_.mesh.may_collapse(p.u, v) || (!last_resort_ && folds_faces(measured_.mesh, p.u, v))) {
         touched.push_back(p.u);
         continue;
       }
@@ -284,7 +286,7 @@ class Collapser {
   std::vector<Removal> removal_;  // per vertex: the best way to remove it
   std::vector<std::uint8_t> guarded_, blocked_;
   std::vector<Index> dirty_, marked_;
-  bool may_fold_ = false;  // once nothing else is left
+  bool last_resort_ = false;  // once nothing else is left
 };
 
 }  // namespace

@@ -238,8 +238,8 @@ SimplifiedMesh simplify_ssim(const TriangleMesh& mesh, const SimplifyTarget& tar
   if (target.vertices > 0) copies.vertices += manifold.source.size() - num_merged_vertices(manifold);
   const bool is_reached = target.vertices > 0 ? manifold.mesh.positions.size() <= copies.vertices
                                               : manifold.mesh.triangles.size() <= copies.faces;
-  SimplifiedMesh result = is_reached ? merge_copies(std::move(manifold))
-                                     : Ssim(mesh, manifold, copies, guide, options, context).run();
+  SimplifiedMesh result =
+      is_reached ? merge_copies(std::move(manifold)) : Ssim(mesh, manifold, copies, guide, options, context).run();
   context.check();
   context.report(1.0, "done");
   return result;

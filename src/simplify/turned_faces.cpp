@@ -255,7 +255,9 @@ std::vector<Index> turned_faces(const TriangleMesh& reference, const TriangleMes
   std::vector<Vec3> normal(mesh.triangles.size());
   for (std::size_t f = 0; f < normal.size(); ++f) normal[f] = normal_of(mesh.positions, mesh.triangles[f]);
   std::vector<std::uint8_t> has_neighbor(mesh.triangles.size(), 0), supported(mesh.triangles.size(), 0);
-  edges.for_each([&](Index, Index, std::span<const EdgeUse> faces) {
+  std::vector<std::uint8_t> at_junction(mesh.positions.size(), 0);
+  edges.for_each([&](Index low, Index high, std::span<const EdgeUse> faces) {
+    if (faces.size() > 2) at_junction[low] = at_junction[high] = 1;
     for (const EdgeUse& f : faces) {
       for (const EdgeUse& g : faces) {
         if (f.face == g.face) continue;
@@ -268,6 +270,8 @@ std::vector<Index> turned_faces(const TriangleMesh& reference, const TriangleMes
   std::vector<Index> turned;
   for (Index f = 0; f < normal.size(); ++f) {
     if (has_neighbor[f] == 0 || supported[f] != 0) continue;
+    const auto& [a, b, c] = mesh.triangles[f];
+    if (at_junction[a] || at_junction[b] || at_junction[c]) continue;
     if (!tree) tree.emplace(reference, context);
     if (looks_against(mesh, f, reference, *tree)) turned.push_back(f);
   }

@@ -11,7 +11,9 @@
 namespace shapelight {
 
 /// Faces that lie folded on all their neighbours and look against the input around them, ascending. A sharp tip does
-/// one of the two at most; a face that collapses, flips and moves have turned over little by little does both.
+/// one of the two at most; a face that collapses, flips and moves have turned over little by little does both. Where
+/// more than two faces meet at an edge, several sheets of the input are near and none can say which way is out: faces
+/// there are passed over.
 [[nodiscard]] std::vector<Index> turned_faces(const TriangleMesh& reference, const TriangleMesh& mesh,
                                               const EdgeUses& edges, const RunContext& context);
 

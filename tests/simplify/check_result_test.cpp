@@ -114,7 +114,8 @@ TEST(CheckResult, NoHoleNoHandleNoLostPart) {
     for (Index& v : t) v += static_cast<Index>(n);
     two.triangles.push_back(t);
   }
-  expect_broken(broken(identity(two), identity(mesh_of(sphere(1, 1.0)))), "Euler characteristic 2, expected the input's 4");
+  expect_broken(broken(identity(two), identity(mesh_of(sphere(1, 1.0)))),
+                "Euler characteristic 2, expected the input's 4");
 }
 
 TEST(CheckResult, MoreBordersAreMoreHoles) {
@@ -129,14 +130,14 @@ TEST(CheckResult, NoEdgeWithMoreThanTwoFacesThatTheInputLacks) {
   const SimplifiedMesh flat = identity(mesh_of(plane(5, 1.0)));
   SimplifiedMesh fin = flat;
   fin.mesh.triangles.push_back({6, 7, 24});  // 6-7 has two faces already
-  expect_broken(broken(flat, fin), "more than two faces at the edge from input vertex 6 to 7");
+  expect_broken(broken(flat, fin),
+                "1 edges with more than two faces, expected at most the input's 0; one is from input vertex 6 to 7");
   // The same fin in the input is its own affair.
   MeshOddities oddities;
   const SimplifiedMesh odd = without_oddities(fin.mesh, oddities);
   EXPECT_EQ(broken(odd, odd), "");
   EXPECT_GT(oddities.locked_vertices, 0u);
 }
-
 
 TEST(CheckResult, NoFaceIsTurnedOver) {
   const SimplifiedMesh flat = identity(mesh_of(plane(5, 1.0)));
@@ -149,7 +150,8 @@ TEST(CheckResult, NoFaceIsTurnedOver) {
 
 TEST(TurnedFaces, SharpTipsAndThinSheetsAreNot) {
   // A needle: every face of its tip looks away from its neighbours, but not from the input.
-  TriangleMesh needle{{{0, 0, 0}, {0.01, 0, 0}, {0, 0.01, 0}, {0.003, 0.003, 5.0}}, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}};
+  TriangleMesh needle{{{0, 0, 0}, {0.01, 0, 0}, {0, 0.01, 0}, {0.003, 0.003, 5.0}},
+                      {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}};
   EXPECT_EQ(broken(identity(needle), identity(needle)), "");
   TriangleMesh flat{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.3, 0.3, 1e-6}}, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}};
   EXPECT_EQ(broken(identity(flat), identity(flat)), "");

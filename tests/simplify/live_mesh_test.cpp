@@ -134,7 +134,8 @@ TEST(LiveMesh, FlipAndItsReverse) {
 }
 
 TEST(LiveMesh, FlipNeverDoublesAnEdgeNorCrossesALine) {
-  const TriangleMesh tetrahedron{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
+  const TriangleMesh tetrahedron{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+                                 {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
   std::array<Index, 4> quad{};
   EXPECT_FALSE(live(tetrahedron).may_flip(0, 1, quad));
   const Shape sphere = shapelight::testing::sphere(1, 1.0);

@@ -119,8 +119,8 @@ TEST(MeasuredFlips, TurnADiagonalIntoTheCrease) {
   // A roof whose ridge joins vertices 1 and 3; the diagonal between 0 and 2 would cut it off.
   const std::vector<Vec3> corners = {{0, 0, 0}, {1, -2, 0.4}, {2, 0, 0}, {1, 2, 0.4}};
   const ManifoldMesh roof = make_manifold({corners, {{0, 1, 3}, {1, 2, 3}}}, {}, {}, nullptr);
-  MeasuredMesh measured(roof, roof.mesh.positions,
-                        make_manifold({corners, {{0, 1, 2}, {0, 2, 3}}}, {}, {}, nullptr), {}, {});
+  MeasuredMesh measured(roof, roof.mesh.positions, make_manifold({corners, {{0, 1, 2}, {0, 2, 3}}}, {}, {}, nullptr),
+                        {}, {});
   ASSERT_GT(energy(measured), 0.01);
   EXPECT_EQ(flip_edges(measured, {}), 1U);
   EXPECT_NEAR(energy(measured), 0.0, 1e-9);

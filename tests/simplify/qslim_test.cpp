@@ -199,7 +199,8 @@ TEST_P(Qslim, FeatureLinesSurvive) {
   simplification::QuadricCollapse options;
   options.placement = GetParam();
   options.boundary_weight = 0.0;  // nothing but the rule
-  const simplification::ManifoldMesh result = simplification::collapse_quadrics(std::move(mesh), {.vertices = 40}, options, {});
+  const simplification::ManifoldMesh result =
+      simplification::collapse_quadrics(std::move(mesh), {.vertices = 40}, options, {});
   // From end to end along edges that the mesh has.
   const auto edges = testing::directed_edges(result.mesh.triangles);
   const auto at = [&](Index source) {
@@ -232,7 +233,8 @@ TEST_P(Qslim, AClosedLineKeepsThreeEdges) {
   options.placement = GetParam();
   options.boundary_weight = 0.0;
   const auto result = simplification::collapse_quadrics(
-      simplification::make_manifold(as_mesh(shape), {{a, b}, {b, c}, {c, a}}, {}, nullptr), {.vertices = 12}, options, {});
+      simplification::make_manifold(as_mesh(shape), {{a, b}, {b, c}, {c, a}}, {}, nullptr), {.vertices = 12}, options,
+      {});
   std::set<Index> on_line;
   for (Index v = 0; v < result.line.size(); ++v) {
     if (result.line[v][0] != kNoIndex) on_line.insert({v, result.line[v][0], result.line[v][1]});
@@ -267,8 +269,8 @@ TEST_P(Qslim, RemovalWeightsHoldVertices) {
     simplification::QuadricCollapse options;
     options.placement = GetParam();
     options.removal_weight = weights;
-    const auto result = simplification::collapse_quadrics(simplification::make_manifold(as_mesh(shape), {}, {}, nullptr),
-                                                    {.vertices = n / 6}, options, {});
+    const auto result = simplification::collapse_quadrics(
+        simplification::make_manifold(as_mesh(shape), {}, {}, nullptr), {.vertices = n / 6}, options, {});
     return std::ranges::count_if(result.source, [](Index v) { return v % 8 == 0; });
   };
   const auto without = kept_of_weighted(1.0f), soft = kept_of_weighted(3.0f);
@@ -287,7 +289,7 @@ TEST_P(Qslim, HeavyVerticesStayWhereTheyAre) {
   options.placement = GetParam();
   options.removal_weight = weights;
   const auto result = simplification::collapse_quadrics(simplification::make_manifold(as_mesh(shape), {}, {}, nullptr),
-                                                  {.vertices = weights.size() / 4}, options, {});
+                                                        {.vertices = weights.size() / 4}, options, {});
   std::size_t unmoved = 0;
   for (std::size_t v = 0; v < result.source.size(); ++v) {
     unmoved += result.source[v] % 16 == 0 && result.mesh.positions[v] == shape.positions[result.source[v]];

@@ -12,7 +12,8 @@ namespace shapelight::simplification {
 namespace {
 
 Vec3 random_point(std::uint64_t stream, std::uint64_t id) {
-  return {random01(1, 3 * stream, id) - 0.5, random01(1, 3 * stream + 1, id) - 0.5, random01(1, 3 * stream + 2, id) - 0.5};
+  return {random01(1, 3 * stream, id) - 0.5, random01(1, 3 * stream + 1, id) - 0.5,
+          random01(1, 3 * stream + 2, id) - 0.5};
 }
 
 void set_sample(SampleBlock& block, std::size_t i, const Vec3& p, const Vec3& normal, float weight, float turn) {
@@ -76,7 +77,8 @@ TEST(SampleBlock, TriangleWithoutAreaIsPassedOver) {
 }
 
 TEST(LocalTriangle, QualityIsThatOfTheEquilateralOneAtMost) {
-  EXPECT_NEAR(LocalTriangle(Vec3::Zero(), Vec3::UnitX(), {0.5, std::sqrt(0.75), 0.0}).quality(), std::sqrt(0.75), 1e-12);
+  EXPECT_NEAR(LocalTriangle(Vec3::Zero(), Vec3::UnitX(), {0.5, std::sqrt(0.75), 0.0}).quality(), std::sqrt(0.75),
+              1e-12);
   EXPECT_NEAR(LocalTriangle(Vec3::Zero(), Vec3::UnitX(), {0.5, 1e-3, 0.0}).quality(), 1e-3, 1e-12);
   EXPECT_EQ(LocalTriangle(Vec3::Zero(), Vec3::Zero(), Vec3::Zero()).quality(), 0.0);
 }

@@ -40,7 +40,7 @@ TEST(FoldsFaces, SeesAFaceThatLiesOnAllItsNeighbours) {
   mesh.position[4] = {1.2, 0.5, 0.0};  // face (1, 2, 4) turns over
   EXPECT_TRUE(folds_faces(mesh, 4, 4));
   EXPECT_TRUE(folds_faces(mesh, 5, 5));  // the one beside it
-  mesh.position[4] = {1.2, 0.5, 5.0};  // upright
+  mesh.position[4] = {1.2, 0.5, 5.0};    // upright
   EXPECT_EQ(folds(mesh), 0U);
 }
 
@@ -56,9 +56,9 @@ TEST(FoldsFaces, LooksAheadOfARemoval) {
 }
 
 TEST(FoldsFaces, TwoFacesBackToBackHoldEachOtherNot) {
-  const LiveMesh pillow(make_manifold({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.3, 0.3, 1e-6}},
-                                       {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}},
-                                      {}, {}, nullptr));
+  const LiveMesh pillow(
+      make_manifold({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.3, 0.3, 1e-6}}, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}},
+                    {}, {}, nullptr));
   EXPECT_TRUE(folds_faces(pillow, 0, 0));
   const LiveMesh alone(make_manifold({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}}, {}, {}, nullptr));
   EXPECT_FALSE(folds_faces(alone, 0, 0));  // no neighbour to lie on
