@@ -19,7 +19,9 @@ inline constexpr float kParked = -1.0f;  // key of a vertex that waits for its r
 template <class Rule>
 class CollapseLoop {
  public:
-  CollapseLoop(CollapseMesh& mesh, std::span<const float> removal_weight, const SimplifyTarget& target,
+  using Mesh = typename Rule::Mesh;
+
+  CollapseLoop(Mesh& mesh, std::span<const float> removal_weight, const SimplifyTarget& target,
                std::size_t fixed_copies, const RunContext& context)
       : mesh_(mesh),
         rule_(mesh, removal_weight),
@@ -162,7 +164,7 @@ class CollapseLoop {
     if (mesh_.vertex(u).key == kParked) requeue(u);
   }
 
-  CollapseMesh& mesh_;
+  Mesh& mesh_;
   Rule rule_;
   SimplifyTarget target_;
   std::size_t fixed_copies_;
@@ -176,7 +178,7 @@ class CollapseLoop {
 template <class Rule>
 ManifoldMesh run_collapse(ManifoldMesh&& input, const SimplifyTarget& target, const QuadricCollapse& options,
                           const RunContext& context) {
-  CollapseMesh mesh(input, options.boundary_weight, context);
+  typename Rule::Mesh mesh(input, options.boundary_weight, context);
   CollapseLoop<Rule> loop(mesh, options.removal_weight, target, input.source.size() - num_merged_vertices(input),
                           context);
   loop.run();

@@ -44,7 +44,8 @@ std::size_t count_common(std::span<const Index> a, std::span<const Index> b) {
 }  // namespace
 
 // Would the removal of u into v make an edge or a face twice, once the copies of every junction are one?
-bool CollapseMesh::meets_another_copy(Index u, Index v) const {
+template <class Scalar>
+bool CollapseMesh<Scalar>::meets_another_copy(Index u, Index v) const {
   const auto ring_u = ring(u), ring_v = ring(v);
   const auto has_copy_of = [&](std::span<const Index> around, Index w) {
     return std::any_of(around.begin(), around.end(),
@@ -67,7 +68,8 @@ bool CollapseMesh::meets_another_copy(Index u, Index v) const {
   return false;
 }
 
-bool CollapseMesh::keeps_topology(Index u, Index v) const {
+template <class Scalar>
+bool CollapseMesh<Scalar>::keeps_topology(Index u, Index v) const {
   const auto ring_u = ring(u), ring_v = ring(v);
   const bool u_open = vertices_[u].is(kOpen), v_open = vertices_[v].is(kOpen);
   const std::size_t at = position_in(ring_u, v);
@@ -92,37 +94,40 @@ bool CollapseMesh::keeps_topology(Index u, Index v) const {
   return count_common(ring_u, ring_v) == (border_edge ? 1u : 2u);
 }
 
-bool CollapseMesh::keeps_faces(Index u, Index other, const Vec3f& p, bool slivers) const {
+template <class Scalar>
+bool CollapseMesh<Scalar>::keeps_faces(Index u, Index other, const Vector& p, bool slivers) const {
   const auto around = ring(u);
-  const Vec3f from = points_[u].position();
+  const Vector from = points_[u].position();
   const bool open = vertices_[u].is(kOpen);
   for (std::size_t i = open ? 1 : 0; i < around.size(); ++i) {
     const Index wa = around[i == 0 ? around.size() - 1 : i - 1], wb = around[i];
     if (wa == other || wb == other) continue;
-    const Vec3f a = points_[wa].position(), b = points_[wb].position();
-    const Vec3f side = b - a, old_side = a - from, new_side = a - p;
-    const Vec3f old_normal = old_side.cross(side), new_normal = new_side.cross(side);
-    const float old_sq = old_normal.squaredNorm(), new_sq = new_normal.squaredNorm();
-    if (old_sq == 0.0f) continue;  // had no direction to turn from
-    const float dot = old_normal.dot(new_normal);
-    if (!(dot > 0.0f) || dot * dot < kTurned * kTurned * old_sq * new_sq) return false;
+    const Vector a = points_[wa].position(), b = points_[wb].position();
+    const Vector side = b - a, old_side = a - from, new_side = a - p;
+    const Vector old_normal = old_side.cross(side), new_normal = new_side.cross(side);
+    const Scalar old_sq = old_normal.squaredNorm(), new_sq = new_normal.squaredNorm();
+    if (old_sq == 0) continue;  // had no direction to turn from
+    const Scalar dot = old_normal.dot(new_normal);
+    if (!(dot > 0) || dot * dot < kTurned * kTurned * old_sq * new_sq) return false;
     if (slivers) continue;
-    const float new_sides = new_side.squaredNorm() + side.squaredNorm() + (b - p).squaredNorm();
+    const Scalar new_sides = new_side.squaredNorm() + side.squaredNorm() + (b - p).squaredNorm();
     if (new_sq < kSliver * kSliver * new_sides * new_sides) {
-      const float old_sides = old_side.squaredNorm() + side.squaredNorm() + (b - from).squaredNorm();
+      const Scalar old_sides = old_side.squaredNorm() + side.squaredNorm() + (b - from).squaredNorm();
       if (new_sq * old_sides * old_sides < old_sq * new_sides * new_sides) return false;
     }
   }
   return true;
 }
 
-void CollapseMesh::replace(Index v, Index old_neighbor, Index new_neighbor) {
+template <class Scalar>
+void CollapseMesh<Scalar>::replace(Index v, Index old_neighbor, Index new_neighbor) {
   Index* slot = arena_.data() + vertices_[v].ring;
   while (*slot != old_neighbor) ++slot;
   *slot = new_neighbor;
 }
 
-void CollapseMesh::remove(Index v, Index neighbor) {
+template <class Scalar>
+void CollapseMesh<Scalar>::remove(Index v, Index neighbor) {
   Index* const begin = arena_.data() + vertices_[v].ring;
   Index* const end = begin + vertices_[v].size;
   Index* slot = begin;
@@ -133,7 +138,8 @@ void CollapseMesh::remove(Index v, Index neighbor) {
 }
 
 // In v's own place, else in that of u, else at the end with room to grow.
-void CollapseMesh::store_ring(Index v, Index u, std::span<const Index> ring) {
+template <class Scalar>
+void CollapseMesh<Scalar>::store_ring(Index v, Index u, std::span<const Index> ring) {
   Vertex& kept = vertices_[v];
   if (ring.size() > kept.capacity) {
     if (ring.size() <= vertices_[u].capacity) {
@@ -150,7 +156,8 @@ void CollapseMesh::store_ring(Index v, Index u, std::span<const Index> ring) {
   kept.size = static_cast<Index>(ring.size());
 }
 
-void CollapseMesh::relink_line(Index u, Index v) {
+template <class Scalar>
+void CollapseMesh<Scalar>::relink_line(Index u, Index v) {
   const Index beyond = lines_[u][0] == v ? lines_[u][1] : lines_[u][0];
   const auto link = [&](Index w, Index to) {
     for (Index& end : lines_[w]) end = end == u ? to : end;
@@ -159,7 +166,8 @@ void CollapseMesh::relink_line(Index u, Index v) {
   link(beyond, v);
 }
 
-CollapseMesh::Wing CollapseMesh::collapse(Index u, Index v) {
+template <class Scalar>
+typename CollapseMesh<Scalar>::Wing CollapseMesh<Scalar>::collapse(Index u, Index v) {
   const auto ring_u = ring(u), ring_v = ring(v);
   const std::size_t n = ring_u.size(), m = ring_v.size();
   const std::size_t at_v = position_in(ring_u, v), at_u = position_in(ring_v, u);
@@ -199,5 +207,8 @@ CollapseMesh::Wing CollapseMesh::collapse(Index u, Index v) {
   wing.gained = gained_;
   return wing;
 }
+
+template class CollapseMesh<float>;
+template class CollapseMesh<double>;
 
 }  // namespace shapelight::simplification

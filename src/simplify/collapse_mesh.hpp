@@ -11,15 +11,18 @@ namespace shapelight::simplification {
 
 /// A manifold mesh for edge collapses: no faces and no half-edges, only the ordered neighbours ("ring") of every
 /// vertex, in one arena. Vertices are numbered along a Morton curve and one collapse touches one neighbourhood, so
-/// most of what it reads is in the cache. Coordinates are single precision in a box of size 1 about the origin.
+/// most of what it reads is in the cache. Coordinates are in a box of size 1 about the origin.
+template <class Scalar>
 class CollapseMesh {
  public:
-  /// What is read of many neighbours at a time: one vector register.
-  struct alignas(16) Point {
-    float x, y, z;
-    float error;  ///< the vertex's own quadric at its own position
+  using Vector = typename Quadric<Scalar>::Vector;
 
-    [[nodiscard]] Vec3f position() const { return {x, y, z}; }
+  /// What is read of many neighbours at a time: one vector register.
+  struct alignas(4 * sizeof(Scalar)) Point {
+    Scalar x, y, z;
+    Scalar error;  ///< the vertex's own quadric at its own position
+
+    [[nodiscard]] Vector position() const { return {x, y, z}; }
   };
 
   enum Flag : std::uint16_t {
@@ -31,7 +34,7 @@ class CollapseMesh {
 
   /// What is read of one vertex at a time: one cache line.
   struct alignas(64) Vertex {
-    Quadric quadric;
+    Quadric<Scalar> quadric;
     Index ring, size, capacity;  ///< neighbours are arena[ring, ring + size), counter-clockwise; size 0: dead
     float key;                   ///< cost of the cheapest collapse as far as known
     Index target;                ///< into this neighbour
@@ -65,7 +68,7 @@ class CollapseMesh {
   /// May u be removed into its neighbour v without a change of topology? (Dey et al. 1999: the link condition.)
   [[nodiscard]] bool keeps_topology(Index u, Index v) const;
   /// Does no face of u turn over or become a sliver when u moves to p, leaving the faces of `other` aside?
-  [[nodiscard]] bool keeps_faces(Index u, Index other, const Vec3f& p, bool slivers) const;
+  [[nodiscard]] bool keeps_faces(Index u, Index other, const Vector& p, bool slivers) const;
 
   struct Wing {
     std::span<const Index> gained;  ///< new neighbours of v; valid until the next call
@@ -93,7 +96,7 @@ class CollapseMesh {
  private:
   [[nodiscard]] bool meets_another_copy(Index u, Index v) const;
   void sort_along_curve(std::span<const Vec3> positions, const RunContext& context);
-  void add_quadrics(Index v, float boundary_weight);
+  void add_quadrics(Index v, Scalar boundary_weight);
   void replace(Index v, Index old_neighbor, Index new_neighbor);
   void remove(Index v, Index neighbor);
   void store_ring(Index v, Index u, std::span<const Index> ring);

@@ -7,7 +7,9 @@
 #include "simplify/wedges.hpp"
 
 namespace shapelight::simplification {
-CollapseMesh::CollapseMesh(const ManifoldMesh& mesh, double boundary_weight, const RunContext& context) {
+
+template <class Scalar>
+CollapseMesh<Scalar>::CollapseMesh(const ManifoldMesh& mesh, double boundary_weight, const RunContext& context) {
   const auto& positions = mesh.mesh.positions;
   const auto& triangles = mesh.mesh.triangles;
   const std::size_t n = positions.size();
@@ -55,12 +57,13 @@ CollapseMesh::CollapseMesh(const ManifoldMesh& mesh, double boundary_weight, con
       vertex.set(kLocked, mesh.locked[order_[v]] != 0);
       vertex.stamp = 0;
       vertex.target = kNoIndex;
-      add_quadrics(static_cast<Index>(v), static_cast<float>(boundary_weight));
+      add_quadrics(static_cast<Index>(v), static_cast<Scalar>(boundary_weight));
     }
   });
 }
 
-void CollapseMesh::sort_along_curve(std::span<const Vec3> positions, const RunContext& context) {
+template <class Scalar>
+void CollapseMesh<Scalar>::sort_along_curve(std::span<const Vec3> positions, const RunContext& context) {
   if (positions.empty()) return;
   Vec3 low = positions[0], high = positions[0];
   for (const Vec3& p : positions) {
@@ -74,36 +77,39 @@ void CollapseMesh::sort_along_curve(std::span<const Vec3> positions, const RunCo
   points_.resize(positions.size());
   parallel::for_chunks(context, positions.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
-      const Vec3f p = (scale_ * (positions[order_[v]] - center_)).cast<float>();
-      points_[v] = {p.x(), p.y(), p.z(), 0.0f};
+      // Rounded, so that ties break the same way wherever the mesh lies.
+      const Eigen::Vector3f p = (scale_ * (positions[order_[v]] - center_)).template cast<float>();
+      points_[v] = {p.x(), p.y(), p.z(), 0};
     }
   });
 }
 
 // Planes of the faces times their area; along lines planes through the edge, square to its faces, times its length
 // squared. All of them pass through the vertex.
-void CollapseMesh::add_quadrics(Index v, float boundary_weight) {
+template <class Scalar>
+void CollapseMesh<Scalar>::add_quadrics(Index v, Scalar boundary_weight) {
   Vertex& vertex = vertices_[v];
   vertex.quadric = {};
   const auto around = ring(v);
-  const Vec3f p = points_[v].position();
+  const Vector p = points_[v].position();
   for (std::size_t i = vertex.is(kOpen) ? 1 : 0; i < around.size(); ++i) {
     const Index wa = around[i == 0 ? around.size() - 1 : i - 1], wb = around[i];
-    const Vec3f a = points_[wa].position() - p, b = points_[wb].position() - p;
-    const Vec3f normal = a.cross(b);
-    const float length = normal.norm();  // twice the area
-    if (!(length > 0.0f)) continue;
-    vertex.quadric.add_plane(normal, 0.5f / length);
+    const Vector a = points_[wa].position() - p, b = points_[wb].position() - p;
+    const Vector normal = a.cross(b);
+    const Scalar length = normal.norm();  // twice the area
+    if (!(length > 0)) continue;
+    vertex.quadric.add_plane(normal, Scalar(0.5) / length);
     if (!vertex.is(kLine)) continue;
     for (const Index w : lines_[v]) {
       if (w != wa && w != wb) continue;
-      const Vec3f edge = w == wa ? a : b;
+      const Vector edge = w == wa ? a : b;
       vertex.quadric.add_plane(edge.cross(normal) / length, boundary_weight);
     }
   }
 }
 
-ManifoldMesh CollapseMesh::finish(ManifoldMesh&& input, const RunContext& context) const {
+template <class Scalar>
+ManifoldMesh CollapseMesh<Scalar>::finish(ManifoldMesh&& input, const RunContext& context) const {
   const std::size_t n = vertices_.size();
   std::vector<Index> number(n);  // live vertices in the order of the input: first by input vertex, then by our own
   for (Index v = 0; v < n; ++v) number[order_[v]] = v;
@@ -130,7 +136,7 @@ ManifoldMesh CollapseMesh::finish(ManifoldMesh&& input, const RunContext& contex
       if (lines_[v][0] != kNoIndex) result.line[i] = {number[lines_[v][0]], number[lines_[v][1]]};
       result.mesh.positions[i] = input.mesh.positions[from];
       if (vertices_[v].is(kMoved)) {
-        result.mesh.positions[i] = center_ + points_[v].position().cast<double>() / scale_;
+        result.mesh.positions[i] = center_ + points_[v].position().template cast<double>() / scale_;
       }
     }
   });
@@ -146,5 +152,10 @@ ManifoldMesh CollapseMesh::finish(ManifoldMesh&& input, const RunContext& contex
   }
   return result;
 }
+
+template CollapseMesh<float>::CollapseMesh(const ManifoldMesh&, double, const RunContext&);
+template CollapseMesh<double>::CollapseMesh(const ManifoldMesh&, double, const RunContext&);
+template ManifoldMesh CollapseMesh<float>::finish(ManifoldMesh&&, const RunContext&) const;
+template ManifoldMesh CollapseMesh<double>::finish(ManifoldMesh&&, const RunContext&) const;
 
 }  // namespace shapelight::simplification

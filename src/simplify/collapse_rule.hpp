@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include "simplify/collapse_mesh.hpp"
@@ -14,24 +15,28 @@ namespace shapelight::simplification {
 inline constexpr float kNever = std::numeric_limits<float>::infinity();
 
 /// What the two placements have in common: the mesh, and what a removal costs beyond its quadric.
+template <class Scalar>
 class CollapseRule {
  public:
-  CollapseRule(CollapseMesh& mesh, std::span<const float> removal_weight) : mesh_(mesh) {
+  using Mesh = CollapseMesh<Scalar>;
+
+  CollapseRule(Mesh& mesh, std::span<const float> removal_weight) : mesh_(mesh) {
     if (removal_weight.empty()) return;
     weight_.resize(mesh.size());
     for (Index v = 0; v < mesh.size(); ++v) weight_[v] = removal_weight[mesh.original(v)];
   }
 
   struct Outcome {
-    CollapseMesh::Wing wing;
+    typename Mesh::Wing wing;
     Index kept;
     bool gained_own_edges;  ///< the gained neighbours' best may now be an edge to the kept vertex
   };
 
  protected:
   // Added per squared length and unit of quadric, so that flat regions, where all errors tie at 0, collapse their short
-  // edges first. A plane's error counts for more as soon as it passes a thousandth of the edge.
-  static constexpr float kLengthPenalty = 1e-8f;
+  // edges first. Above the noise of the scalar: a plane's error counts for more once it passes a ten-thousandth of
+  // the edge in single precision, a third of a millionth in double.
+  static constexpr Scalar kLengthPenalty = std::is_same_v<Scalar, float> ? Scalar(1e-8) : Scalar(1e-12);
 
   /// The cost times the weight of removing u. Infinite weights come after all others, in order of the cost.
   [[nodiscard]] static float weighted(float cost, float weight) {
@@ -40,7 +45,7 @@ class CollapseRule {
     return std::isinf(weight) ? std::clamp(cost, kLeast, kMost) * kLast : std::min(cost * weight, kMost);
   }
 
-  CollapseMesh& mesh_;
+  Mesh& mesh_;
   std::vector<float> weight_;  // per vertex, or empty
 };
 

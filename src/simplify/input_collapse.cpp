@@ -4,7 +4,7 @@ namespace shapelight::simplification {
 namespace {
 
 // Placement::Input: u goes into its neighbour v, which stays where it is. Every vertex keeps its own best target.
-class InputRule : public CollapseRule {
+class InputRule : public CollapseRule<float> {
  public:
   using CollapseRule::CollapseRule;
   [[nodiscard]] float cost(Index u, Index v) const;
@@ -21,8 +21,8 @@ class InputRule : public CollapseRule {
 float InputRule::cost(Index u, Index v) const {
   const auto& from = mesh_.vertex(u);
   // Along its line only; a locked vertex is next to nobody.
-  if ((from.flags & (CollapseMesh::kLocked | CollapseMesh::kLine)) && !mesh_.is_next_on_line(u, v)) return kNever;
-  const Vec3f d = mesh_.point(v).position() - mesh_.point(u).position();
+  if ((from.flags & (Mesh::kLocked | Mesh::kLine)) && !mesh_.is_next_on_line(u, v)) return kNever;
+  const Eigen::Vector3f d = mesh_.point(v).position() - mesh_.point(u).position();
   const float rise = mesh_.point(u).error + from.quadric.rise(d);
   const float error =
       std::max(rise, 0.0f) + mesh_.point(v).error + kLengthPenalty * from.quadric.trace() * d.squaredNorm();
@@ -35,10 +35,10 @@ bool InputRule::prepare(Index u, Index v, bool slivers) {
   return mesh_.keeps_topology(u, v) && mesh_.keeps_faces(u, v, mesh_.point(v).position(), slivers);
 }
 
-CollapseRule::Outcome InputRule::collapse() {
+InputRule::Outcome InputRule::collapse() {
   const Index u = removed_, v = kept_;
-  const Vec3f d = mesh_.point(v).position() - mesh_.point(u).position();
-  const Quadric& gone = mesh_.vertex(u).quadric;
+  const Eigen::Vector3f d = mesh_.point(v).position() - mesh_.point(u).position();
+  const Quadric<float>& gone = mesh_.vertex(u).quadric;
   mesh_.point(v).error += std::max(mesh_.point(u).error + gone.rise(d), 0.0f);
   mesh_.vertex(v).quadric += gone.about(d);
   return {mesh_.collapse(u, v), v, true};

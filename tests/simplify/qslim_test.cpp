@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -172,6 +173,33 @@ TEST_P(Qslim, ABoxKeepsItsCorners) {
   for (const Vec3& p : result.mesh.positions) {
     for (int axis = 0; axis < 3; ++axis) EXPECT_TRUE(p[axis] == 0.0 || p[axis] == n) << p.transpose();
   }
+}
+
+// A plate, flat in one half and, on smaller cells, rough by 1e-4 of their size in the other.
+TEST(QslimOptimal, TheFlatGoesBeforeTheSlightlyRough) {
+  const Index side = 41;
+  const Eigen::AngleAxisd tilt(0.7, Vec3(1.0, 2.0, 3.0).normalized());
+  TriangleMesh mesh;
+  std::vector<Vec3> rough;
+  for (Index r = 0; r < side; ++r) {
+    for (Index c = 0; c < side; ++c) {
+      const bool is_rough = c <= side / 2;
+      const double x = is_rough ? c : 2.0 * c - side / 2, z = is_rough ? 1e-4 * random01(7, r, c) : 0.0;
+      mesh.positions.push_back(tilt * Vec3(x, r, z));
+      if (c < side / 2) rough.push_back(mesh.positions.back());
+      if (r == 0 || c == 0) continue;
+      const Index d = r * side + c, e = d - 1, a = e - side, b = d - side;
+      mesh.triangles.push_back({a, b, d});
+      mesh.triangles.push_back({a, d, e});
+    }
+  }
+  QslimOptions options;
+  options.placement = Placement::Optimal;
+  const std::size_t target = mesh.positions.size() * 4 / 5;
+  const SimplifiedMesh result = simplify_qslim(mesh, {.vertices = target}, options);
+  std::size_t lost = 0;
+  for (const Vec3& p : rough) lost += std::ranges::count(result.mesh.positions, p) == 0;
+  EXPECT_LE(lost, rough.size() / 100);
 }
 
 // Distance of the coarse sphere's vertices and face centres to the true one: the least that a correct quadric gives.
