@@ -10,7 +10,7 @@ import sys
 from pathlib import Path
 
 HERE = Path(__file__).parent
-TIMEOUT = 3600  # seconds; a peer that hangs is a failed cell
+TIMEOUT = 100  # seconds; a peer that hangs is a failed cell
 
 SHAPELIGHT = {
     "QSlim": ["--method", "qslim"],
