@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 
-#include "core/parallel.hpp"
 #include "shapelight/core/error.hpp"
 #include "shapelight/data/geometry.hpp"
 #include "simplify/measured_collapse.hpp"
