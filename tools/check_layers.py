@@ -17,7 +17,9 @@ ALLOWED = {
     **{stage: NEIGHBORHOOD | {stage} for stage in STAGES},
     "simplify": BASE | {"spatial", "simplify"},
     "metrics": BASE | {"spatial", "metrics"},
-    "pipeline": NEIGHBORHOOD | STAGES | {"simplify", "metrics", "pipeline"},
+    "registration": BASE | {"spatial", "registration"},
+    "synthetic": BASE | {"spatial", "synthetic"},
+    "pipeline": NEIGHBORHOOD | STAGES | {"simplify", "metrics", "registration", "pipeline"},
     "render": NEIGHBORHOOD | {"io", "render"},
 }
 ONLY_IN = {  # header -> the only files that may include it

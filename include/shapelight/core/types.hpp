@@ -17,6 +17,7 @@ inline constexpr Index kNoIndex = std::numeric_limits<Index>::max();
 /// Largest number of points that one geometry holds.
 inline constexpr std::uint64_t kMaxPoints = kNoIndex - 1;
 
+using RigidTransform = Eigen::Isometry3d;  ///< x -> R x + t; named by its frames: p_a = T_a_b p_b
 using Triangle = std::array<Index, 3>;  ///< vertex indices, counter-clockwise seen from outside
 
 }  // namespace shapelight
