@@ -51,7 +51,7 @@ RigidTransform polish(const PreparedScan& source, const PreparedScan& target, co
   std::vector<registration::SurfacePair> pairs =
       registration::pair_surfaces(source.samples, target.full, T_target_source, context);
   const double widest = registration::widest_gate(source.full, target.full);
-  registration::make_normals_agree(pairs, widest);
+  registration::forget_sides(pairs, source.full, target.full);
   IcpOptions icp;
   icp.metric = IcpMetric::Plane;
   icp.max_distance = registration::find_gate(pairs, widest, kPolishGate * target.full.spacing).width;

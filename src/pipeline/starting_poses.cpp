@@ -50,8 +50,8 @@ double fit_of_samples(const PreparedScan& source, const PreparedScan& target, co
       registration::pair_surfaces(source.samples, target.full, T_target_source, context);
   std::vector<registration::SurfacePair> backward =
       registration::pair_surfaces(target.samples, source.full, T_target_source.inverse(), context);
-  registration::make_normals_agree(forward, reach);
-  registration::make_normals_agree(backward, reach);
+  registration::forget_sides(forward, source.full, target.full);
+  registration::forget_sides(backward, source.full, target.full);
   return std::max(mean_fit(forward, reach), mean_fit(backward, reach));
 }
 

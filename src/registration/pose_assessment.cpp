@@ -37,7 +37,7 @@ BothWays pair_both_ways(const RegistrationCloud& source, const RegistrationCloud
   BothWays both{pair_surfaces(source, target, T, context), source.size()};
   const std::vector<SurfacePair> back = pair_surfaces(target, source, T.inverse(), context);
   both.pairs.insert(both.pairs.end(), back.begin(), back.end());
-  make_normals_agree(both.pairs, widest_gate(source, target));
+  forget_sides(both.pairs, source, target);
   return both;
 }
 
@@ -153,10 +153,11 @@ void measure_conditioning(const Information& info, PoseAssessment& result) {
   Index strongest = 0;
   axis.cwiseAbs().maxCoeff(&strongest);
   if (axis[strongest] < 0.0) axis = -axis;
+  axis = (axis.array().abs() < 0.005).select(0.0, axis);  // no "-0.00"
   (slides ? result.weakest.translation : result.weakest.rotation) = axis;
   result.weakest.uncertainty = std::sqrt(variance / smallest);
   result.weakest.name = fmt::format("{} ({:.2f}, {:.2f}, {:.2f})", slides ? "sliding along" : "turning about",
-                                    axis.x() + 0.0, axis.y() + 0.0, axis.z() + 0.0);
+                                    axis.x(), axis.y(), axis.z());
 }
 
 }  // namespace
