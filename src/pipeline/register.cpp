@@ -70,9 +70,11 @@ struct Attempt {
 Attempt attempt_from(const PreparedScan& source, const PreparedScan& target, const RigidTransform& start,
                      const RegisterOptions& options, const RunContext& context) {
   Attempt attempt;
-  attempt.registration = run_method(source, target, start, options, context);
+  attempt.registration = run_method(source, target, start, options, context.phase(0.0, 0.7, "register"));
   attempt.T_target_source = attempt.registration.T_target_source;
-  if (options.polish) attempt.T_target_source = polish(source, target, attempt.T_target_source, context);
+  if (options.polish) {
+    attempt.T_target_source = polish(source, target, attempt.T_target_source, context.phase(0.7, 1.0, "polish"));
+  }
   attempt.fit = fit_of_samples(source, target, attempt.T_target_source, context);
   return attempt;
 }
