@@ -34,6 +34,7 @@
 namespace {
 
 using namespace shapelight;
+constexpr std::size_t kFewest = 500;  // [points] of a scan that is worth a run
 constexpr double kDegree = std::numbers::pi / 180.0;
 
 struct Shape {
@@ -275,6 +276,7 @@ int run(int argc, char** argv) {
     Draw draw(seed, i);
     const bool is_real = !pairs.empty() && draw.uniform(0.0, 1.0) < 0.5;
     const Case c = is_real ? draw_real_case(pairs, draw) : draw_case(meshes, ambiguous, draw);
+    if (std::min(c.source.scan.geometry.size(), c.target.scan.geometry.size()) < kFewest) continue;  // seen edge-on
     report(i, c, register_scans(c.source.scan.geometry, c.target.scan.geometry, c.init, {}, {.max_threads = 1}));
   }
   return 0;
