@@ -35,6 +35,7 @@ struct RegisterOptions {
   SamplingMethod sampler = SamplingMethod::Shape;
   double ratio = 0.0;         ///< [1] share of each scan's points that is registered; 0: 2000 to 10000 points
   bool skip_boundary = true;  ///< choose no points on the border of a scan: they have no counterpart
+  bool coarse = true;         ///< without a starting pose look for one; else start where the files say
   bool polish = true;         ///< at the end, a few steps of the sampled source against the full target's surface
   double max_distance = 0.0;  ///< [input length unit] of icp, plane and gicp; 0: a tenth of the target's diagonal
   std::uint64_t seed = 0;     ///< of samplers that draw at random
@@ -45,6 +46,8 @@ struct RegisterOptions {
     visit(OptionInfo{"sampler", "", "How points are chosen; both scans are thinned.", 0, 0}, o.sampler);
     visit(OptionInfo{"ratio", "1", "Share of each scan's points to register; 0: 2000 to 10000 points.", 0, 1}, o.ratio);
     visit(OptionInfo{"skip-boundary", "", "Choose no points on the border of a scan.", 0, 1}, o.skip_boundary);
+    visit(OptionInfo{"coarse", "", "Without --init look for a starting pose; else start where the files say.", 0, 1},
+          o.coarse);
     visit(OptionInfo{"polish", "", "At the end, a few steps against the full target.", 0, 1}, o.polish);
     visit(OptionInfo{"max-distance", "input length unit",
                      "Pairs farther apart have no say (icp, plane, gicp); 0: a tenth of the diagonal.", 0, 1e300},
