@@ -104,8 +104,9 @@ PreparedScan prepare_scan(const Geometry& geometry, const RegisterOptions& optio
   }
   const RunContext build = context.phase(0.9, 1.0, "build trees");
   RegistrationCloud thinned = subset(places, samples, build);
-  return {built.graph.origin, RegistrationCloud(std::move(places.position), std::move(places.normal), build),
-          std::move(thinned), std::move(keypoints), geometry.viewpoint.has_value()};
+  RegistrationCloud full(std::move(places.position), std::move(places.normal), build);
+  if (geometry.viewpoint) full.viewpoint = *geometry.viewpoint - built.graph.origin;
+  return {built.graph.origin, std::move(full), std::move(thinned), std::move(keypoints)};
 }
 
 }  // namespace shapelight

@@ -8,20 +8,14 @@
 #include <vector>
 
 #include "core/parallel.hpp"
+#include "registration/sight.hpp"
 #include "registration/surface_pairs.hpp"
 #include "shapelight/core/error.hpp"
 
 namespace shapelight {
 namespace {
 
-using registration::pair_surfaces;
-using registration::SurfacePair;
-
-constexpr double kWidestGate = 0.03;    // of the smaller diagonal
-constexpr double kGateResiduals = 6.0;  // the gate is this many residuals wide,
-constexpr double kGateSpacings = 3.0;   // but never closer than the points allow
-constexpr double kNormalsAgree = 0.7;   // cosine, 45 degrees
-constexpr double kGaussian = 1.4826;    // standard deviation over median of absolute values
+using namespace registration;
 
 void check(const RegistrationCloud& cloud, std::string_view which) {
   if (cloud.size() < 3) {
@@ -30,90 +24,67 @@ void check(const RegistrationCloud& cloud, std::string_view which) {
   if (cloud.normal.empty()) throw InvalidInput(fmt::format("assessing a pose: the {} has no normals", which));
 }
 
-// Source to target and back.
+// Pairs from source to target, then those back.
 struct BothWays {
-  std::vector<SurfacePair> forward, backward;
+  std::vector<SurfacePair> pairs;
+  std::size_t num_forward = 0;
+  [[nodiscard]] std::span<const SurfacePair> forward() const { return std::span(pairs).first(num_forward); }
+  [[nodiscard]] std::span<const SurfacePair> backward() const { return std::span(pairs).subspan(num_forward); }
 };
 
-// Normals of a scan may point to the wrong side as a whole, when nobody knows where its sensor stood.
-void make_normals_agree(BothWays& pairs, double reach) {
-  double sum = 0.0;
-  for (const auto* way : {&pairs.forward, &pairs.backward}) {
-    for (const SurfacePair& pair : *way) {
-      if (pair.distance <= reach) sum += pair.cosine;
-    }
-  }
-  if (sum >= 0.0) return;
-  for (auto* way : {&pairs.forward, &pairs.backward}) {
-    for (SurfacePair& pair : *way) pair.cosine = -pair.cosine;
-  }
+BothWays pair_both_ways(const RegistrationCloud& source, const RegistrationCloud& target, const RigidTransform& T,
+                        const RunContext& context) {
+  BothWays both{pair_surfaces(source, target, T, context), source.size()};
+  const std::vector<SurfacePair> back = pair_surfaces(target, source, T.inverse(), context);
+  both.pairs.insert(both.pairs.end(), back.begin(), back.end());
+  make_normals_agree(both.pairs, widest_gate(source, target));
+  return both;
 }
 
-// Of pairs that face the same way: the heights of those within the gate.
-std::vector<double> heights_within(const BothWays& pairs, double gate) {
-  std::vector<double> heights;
-  for (const auto* way : {&pairs.forward, &pairs.backward}) {
-    for (const SurfacePair& pair : *way) {
-      if (pair.distance <= gate && pair.cosine >= kNormalsAgree) heights.push_back(std::abs(pair.height));
-    }
-  }
-  return heights;
+// Share of a scan's points that lie on the other; and of the close pairs those that face the same way.
+void measure_overlap(const BothWays& both, PoseAssessment& result) {
+  const auto count = [&](std::span<const SurfacePair> way, auto&& is) {
+    return static_cast<double>(std::count_if(way.begin(), way.end(), is));
+  };
+  const auto on_other = [&](const SurfacePair& pair) { return is_overlap(pair, result.gate); };
+  const double forward = count(both.forward(), on_other);
+  const double backward = count(both.backward(), on_other);
+  result.overlap = std::max(forward / static_cast<double>(both.forward().size()),
+                            backward / static_cast<double>(both.backward().size()));
+  const double close = count(both.pairs, [&](const SurfacePair& pair) { return pair.distance <= result.gate; });
+  if (close > 0.0) result.normal_agreement = (forward + backward) / close;
 }
 
-double median(std::vector<double>& values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+// A right pose puts next to nothing where a sensor saw that nothing is.
+double share_in_free_space(const RegistrationCloud& source, const RegistrationCloud& target, const RigidTransform& T,
+                           double gate, const RunContext& context) {
+  constexpr double kGates = 3.0;  // in range; surfaces are slanted
+  Sight::Count both;
+  const auto add = [&](const RegistrationCloud& seer, const RegistrationCloud& seen,
+                       const RigidTransform& T_seer_seen) {
+    if (!seer.viewpoint) return;
+    const Sight::Count count = Sight(seer).count(seen.position, T_seer_seen, kGates * gate, context);
+    both.seen_through += count.seen_through;
+    both.in_sight += count.in_sight;
+  };
+  add(target, source, T);
+  add(source, target, T.inverse());
+  return both.in_sight > 0 ? static_cast<double>(both.seen_through) / static_cast<double>(both.in_sight) : 0.0;
 }
 
-void find_gate(const BothWays& pairs, double widest, double narrowest, PoseAssessment& result) {
-  std::vector<double> heights = heights_within(pairs, widest);
-  const double num_wide = static_cast<double>(heights.size());
-  result.gate = widest;
-  result.residual = kGaussian * median(heights);
-  for (int step = 0; step < 20; ++step) {
-    const double gate = std::max(narrowest, std::min(result.gate, kGateResiduals * result.residual));
-    if (gate >= 0.99 * result.gate) break;
-    heights = heights_within(pairs, gate);
-    result.gate = gate;
-    result.residual = kGaussian * median(heights);
-  }
-  if (num_wide > 0.0) {
-    const double share = static_cast<double>(heights.size()) / num_wide;
-    result.contrast = share * widest / std::max(result.gate, 1e-300);
-  }
-}
-
-// Shares of both scans within the gate, and of the close pairs those that face the same way.
-void measure_overlap(const BothWays& pairs, PoseAssessment& result) {
-  std::size_t close = 0, agreeing = 0;
-  for (const auto* way : {&pairs.forward, &pairs.backward}) {
-    std::size_t agreeing_here = 0;
-    for (const SurfacePair& pair : *way) {
-      if (pair.distance > result.gate) continue;
-      ++close;
-      agreeing_here += pair.cosine >= kNormalsAgree;
-    }
-    agreeing += agreeing_here;
-    result.overlap = std::max(result.overlap, static_cast<double>(agreeing_here) / static_cast<double>(way->size()));
-  }
-  if (close > 0) result.normal_agreement = static_cast<double>(agreeing) / static_cast<double>(close);
-}
-
-ReciprocalError reciprocal_error(const BothWays& pairs) {
+ReciprocalError reciprocal_error(const BothWays& both) {
   ReciprocalError error;
   double sum = 0.0, sum_sq = 0.0;
-  for (std::size_t i = 0; i < pairs.forward.size(); ++i) {
-    const SurfacePair& pair = pairs.forward[i];
-    if (pairs.backward[pair.nearest].nearest != i) continue;
+  for (std::size_t i = 0; i < both.num_forward; ++i) {
+    const SurfacePair& pair = both.pairs[i];
+    if (both.backward()[pair.nearest].nearest != i) continue;
     ++error.pairs;
     sum += pair.distance;
     sum_sq += pair.distance * pair.distance;
   }
   if (error.pairs == 0) return error;
   const double n = static_cast<double>(error.pairs);
-  error.share = n / static_cast<double>(pairs.forward.size());
+  error.share = n / static_cast<double>(both.num_forward);
   error.mean = sum / n;
   error.std = std::sqrt(std::max(0.0, sum_sq / n - error.mean * error.mean));
   return error;
@@ -134,8 +105,7 @@ Information information(const RegistrationCloud& source, const RegistrationCloud
   const auto for_each_pair = [&](auto&& use) {
     for (std::size_t i = 0; i < forward.size(); ++i) {
       const SurfacePair& pair = forward[i];
-      if (pair.distance <= gate && pair.cosine >= kNormalsAgree)
-        use(T * source.position[i], target.normal[pair.nearest]);
+      if (is_overlap(pair, gate)) use(T * source.position[i], target.normal[pair.nearest]);
     }
   };
   for_each_pair([&](const Vec3& point, const Vec3&) { info.center += point, info.pairs += 1.0; });
@@ -195,16 +165,17 @@ PoseAssessment assess_pose(const RegistrationCloud& source, const RegistrationCl
                            const RigidTransform& T_target_source, const RunContext& context) {
   check(source, "source");
   check(target, "target");
-  BothWays pairs{pair_surfaces(source, target, T_target_source, context),
-                 pair_surfaces(target, source, T_target_source.inverse(), context)};
-  const double widest = kWidestGate * std::min(source.diagonal, target.diagonal);
-  make_normals_agree(pairs, widest);
+  const BothWays both = pair_both_ways(source, target, T_target_source, context);
+  const SurfaceGate gate = find_gate(both.pairs, widest_gate(source, target), narrowest_gate(source, target));
 
   PoseAssessment result;
-  result.reciprocal = reciprocal_error(pairs);
-  find_gate(pairs, widest, std::min(widest, kGateSpacings * std::max(source.spacing, target.spacing)), result);
-  measure_overlap(pairs, result);
-  measure_conditioning(information(source, target, T_target_source, pairs.forward, result.gate), result);
+  result.reciprocal = reciprocal_error(both);
+  result.gate = gate.width;
+  result.residual = gate.residual;
+  result.contrast = gate.contrast;
+  measure_overlap(both, result);
+  result.in_free_space = share_in_free_space(source, target, T_target_source, gate.width, context);
+  measure_conditioning(information(source, target, T_target_source, both.forward(), gate.width), result);
   return result;
 }
 

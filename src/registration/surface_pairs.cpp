@@ -1,9 +1,30 @@
 #include "registration/surface_pairs.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "core/parallel.hpp"
 
 namespace shapelight::registration {
 namespace {
+
+constexpr double kGaussian = 1.4826;  // standard deviation over median of absolute values
+
+// Of the overlap within the gate.
+std::vector<double> heights_within(std::span<const SurfacePair> pairs, double gate) {
+  std::vector<double> heights;
+  for (const SurfacePair& pair : pairs) {
+    if (is_overlap(pair, gate)) heights.push_back(std::abs(pair.height));
+  }
+  return heights;
+}
+
+double median(std::vector<double>& values) {
+  if (values.empty()) return 0.0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
 
 SurfacePair pair_of(const Vec3& moved, const Vec3& normal, const RegistrationCloud& to, const Neighbor& nearest) {
   const Vec3& there = to.normal[nearest.index];
@@ -36,6 +57,42 @@ std::vector<SurfacePair> pair_surfaces(const RegistrationCloud& from, const Regi
     }
   });
   return pairs;
+}
+
+void make_normals_agree(std::span<SurfacePair> pairs, double reach) {
+  double sum = 0.0;
+  for (const SurfacePair& pair : pairs) {
+    if (pair.distance <= reach) sum += pair.cosine;
+  }
+  if (sum >= 0.0) return;
+  for (SurfacePair& pair : pairs) pair.cosine = -pair.cosine;
+}
+
+SurfaceGate find_gate(std::span<const SurfacePair> pairs, double widest, double narrowest) {
+  constexpr double kResiduals = 6.0;  // the gate is this many of them wide
+  constexpr int kSteps = 20;
+  std::vector<double> heights = heights_within(pairs, widest);
+  const double num_wide = static_cast<double>(heights.size());
+  SurfaceGate gate{widest, kGaussian * median(heights), 0.0};
+  for (int step = 0; step < kSteps; ++step) {
+    const double width = std::max(narrowest, std::min(gate.width, kResiduals * gate.residual));
+    if (width >= 0.99 * gate.width) break;
+    heights = heights_within(pairs, width);
+    gate.width = width;
+    gate.residual = kGaussian * median(heights);
+  }
+  if (num_wide > 0.0 && gate.width > 0.0) {
+    gate.contrast = static_cast<double>(heights.size()) / num_wide * widest / gate.width;
+  }
+  return gate;
+}
+
+double widest_gate(const RegistrationCloud& a, const RegistrationCloud& b) {
+  return std::max(0.03 * std::min(a.diagonal, b.diagonal), narrowest_gate(a, b));
+}
+
+double narrowest_gate(const RegistrationCloud& a, const RegistrationCloud& b) {
+  return 3.0 * std::max(a.spacing, b.spacing);
 }
 
 }  // namespace shapelight::registration

@@ -24,4 +24,29 @@ struct SurfacePair {
 [[nodiscard]] std::vector<SurfacePair> pair_surfaces(const RegistrationCloud& from, const RegistrationCloud& to,
                                                      const RigidTransform& T_to_from, const RunContext& context);
 
+/// Turns the normals of one side over when most close pairs face opposite ways: without a known sensor the normals of a
+/// scan may point to the wrong side as a whole.
+void make_normals_agree(std::span<SurfacePair> pairs, double reach);
+
+/// Do these two lie on the same side of a surface, the one within `gate` of the other?
+[[nodiscard]] inline bool is_overlap(const SurfacePair& pair, double gate) {
+  constexpr double kAgree = 0.7;  // 45 degrees
+  return pair.distance <= gate && pair.cosine >= kAgree;
+}
+
+/// How close two surfaces come where they are the same.
+struct SurfaceGate {
+  double width = 0.0;     ///< [length]
+  double residual = 0.0;  ///< [length] 1.4826 times the median of |height| within
+  double contrast = 0.0;  ///< [1] density of pairs within over that within the widest gate; 1: it could not shrink
+};
+
+/// Starts at `widest` and shrinks to six residuals, and never below `narrowest`, as long as residuals shrink with it:
+/// on a right pose they do, down to noise and point spacing; on a wrong one heights fill any gate evenly.
+[[nodiscard]] SurfaceGate find_gate(std::span<const SurfacePair> pairs, double widest, double narrowest);
+
+/// The widest and the narrowest gate for two scans: 3 % of the smaller diagonal, 3 of the wider spacings.
+[[nodiscard]] double widest_gate(const RegistrationCloud& a, const RegistrationCloud& b);
+[[nodiscard]] double narrowest_gate(const RegistrationCloud& a, const RegistrationCloud& b);
+
 }  // namespace shapelight::registration

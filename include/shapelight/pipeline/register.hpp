@@ -62,7 +62,6 @@ struct PreparedScan {
   RegistrationCloud full;        ///< the distinct finite points that are no strays, with normals
   RegistrationCloud samples;     ///< those that carry its shape, with the normals of the full scan
   std::vector<Index> keypoints;  ///< of `full`, best first: where descriptors are taken
-  bool normals_look_at_sensor = false;
 };
 
 /// Thins a scan. Throws InvalidInput (too few points to register, by cause), TargetUnreachable, Cancelled.
@@ -76,6 +75,9 @@ struct RegisterResult {
   std::size_t source_samples = 0;
   std::size_t target_samples = 0;
   std::size_t hypotheses = 0;  ///< starting poses tried; 0 when one was given
+  double fit = 0.0;            ///< [1] how well the samples of the scan that fits better lie on the other one
+  double rival_fit = 0.0;      ///< [1] the same of the best pose that is another one, of those that were tried
+  std::string doubt;           ///< what speaks most against the pose: "the scans overlap by 4 % only", ...
   std::vector<std::string> warnings;
 };
 

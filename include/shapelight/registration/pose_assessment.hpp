@@ -35,18 +35,21 @@ struct PoseAssessment {
   double gate = 0.0;     ///< [input length unit] how close surfaces must come to count as one, from the residuals
   double overlap = 0.0;  ///< [1] share of a scan's points within the gate of the other; of the scan that has more
   double normal_agreement = 0.0;  ///< [1] share of those pairs whose normals agree
-  double residual = 0.0;  ///< [input length unit] point-to-plane over the overlap: 1.4826 times the median
-  double contrast = 0.0;  ///< [1] how much more often surfaces lie within the gate than chance would have them, see below
+  double residual = 0.0;          ///< [input length unit] point-to-plane over the overlap: 1.4826 times the median
+  double in_free_space =
+      0.0;  ///< [1] share of the points that a sensor looked through, of those in its sight; 0: unknown
+  double contrast =
+      0.0;  ///< [1] how much more often surfaces lie within the gate than chance would have them, see below
   double conditioning = 0.0;  ///< [1] smallest over largest eigenvalue of the scaled information; 0: undetermined
   Matrix6 covariance = Matrix6::Zero();  ///< of (turn [rad] about, slide [length] of) the target's origin
   WeakestDirection weakest;
   double confidence = 0.0;  ///< [1] calibrated share of right poses among poses that look like this one
 };
 
-/// Assesses a pose on the full scans: how far they overlap, how well they fit there, and whether that fit determines the
-/// pose. The gate starts at 3 % of the smaller diagonal and shrinks to six residuals as long as the residuals shrink with
-/// it: on a right pose they do, to the noise and the point spacing; on a wrong one they fill any gate evenly.
-/// Pre: both clouds have normals and 3 points or more (InvalidInput). Cost: two tree searches per point.
+/// Assesses a pose on the full scans: how far they overlap, how well they fit there, and whether that fit determines
+/// the pose. The gate starts at 3 % of the smaller diagonal and shrinks to six residuals as long as the residuals
+/// shrink with it: on a right pose they do, to the noise and the point spacing; on a wrong one they fill any gate
+/// evenly. Pre: both clouds have normals and 3 points or more (InvalidInput). Cost: two tree searches per point.
 [[nodiscard]] PoseAssessment assess_pose(const RegistrationCloud& source, const RegistrationCloud& target,
                                          const RigidTransform& T_target_source, const RunContext& context = {});
 
