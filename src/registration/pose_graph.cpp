@@ -42,6 +42,11 @@ void check(std::size_t num_scans, std::span<const PoseGraphEdge> edges) {
   }
 }
 
+// What the poses say, in the target's frame, after undoing what was measured.
+RigidTransform error_of(const PoseGraphEdge& edge, std::span<const RigidTransform> poses) {
+  return poses[edge.target].inverse() * poses[edge.source] * edge.T_target_source.inverse();
+}
+
 class Graph {
  public:
   Graph(std::size_t num_scans, std::span<const PoseGraphEdge> edges, const PoseGraphOptions& options,
@@ -130,23 +135,13 @@ class Graph {
     members[other].clear();
   }
 
-  [[nodiscard]] RigidTransform disagreement(std::size_t e, std::span<const RigidTransform> poses) const {
-    const PoseGraphEdge& edge = edges_[e];
-    return poses[edge.target].inverse() * poses[edge.source] * edge.T_target_source.inverse();
-  }
-
-  [[nodiscard]] double chi_sq(std::size_t e, std::span<const RigidTransform> poses) const {
-    const Vector6 error = registration::coordinates_of(disagreement(e, poses));
-    return error.dot(information_[e] * error);
-  }
-
   // Sum of width chi^2 / (width + chi^2); an infinite width is plain least squares.
   [[nodiscard]] PairCost cost(std::span<const RigidTransform> poses, const std::vector<bool>& is_used,
                               double width) const {
     PairCost total;
     for (std::size_t e = 0; e < edges_.size(); ++e) {
       if (!is_used[e]) continue;
-      const RigidTransform off = disagreement(e, poses);
+      const RigidTransform off = error_of(edges_[e], poses);
       const Vector6 error = registration::coordinates_of(off);
       const double here = error.dot(information_[e] * error);
       const double relative = 1.0 / (1.0 + here / width);
@@ -182,7 +177,7 @@ class Graph {
       for (std::size_t e = 0; e < edges_.size(); ++e) {
         EdgeUse& use = result_.edges[e].use;
         if (use == EdgeUse::LowConfidence || groups.find(edges_[e].target) != groups.find(edges_[e].source)) continue;
-        const bool agrees = chi_sq(e, result_.T_world_scan) <= options_.max_chi_sq;
+        const bool agrees = measure_disagreement(edges_[e], result_.T_world_scan).chi_sq <= options_.max_chi_sq;
         if (agrees == (use == EdgeUse::Used)) continue;
         use = agrees ? EdgeUse::Used : EdgeUse::PosesDisagree;
         is_same = false;
@@ -215,15 +210,13 @@ class Graph {
   void measure(std::span<const RigidTransform> start) {
     for (std::size_t e = 0; e < edges_.size(); ++e) {
       PoseGraphEdgeResult& edge = result_.edges[e];
-      edge.rotation = edge.translation = edge.chi_sq = std::numeric_limits<double>::quiet_NaN();
+      constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+      edge.disagreement = {kNaN, kNaN, kNaN};
       if (result_.group[edges_[e].target] != result_.group[edges_[e].source]) continue;
-      const Vector6 error = registration::coordinates_of(disagreement(e, result_.T_world_scan));
-      edge.rotation = error.head<3>().norm();
-      edge.translation = error.tail<3>().norm();
-      edge.chi_sq = chi_sq(e, result_.T_world_scan);
+      edge.disagreement = measure_disagreement(edges_[e], result_.T_world_scan);
       if (edge.use != EdgeUse::Used) continue;
-      result_.chi_sq_before += chi_sq(e, start);
-      result_.chi_sq_after += edge.chi_sq;
+      result_.chi_sq_before += measure_disagreement(edges_[e], start).chi_sq;
+      result_.chi_sq_after += edge.disagreement.chi_sq;
     }
   }
 
@@ -236,6 +229,11 @@ class Graph {
 };
 
 }  // namespace
+
+EdgeDisagreement measure_disagreement(const PoseGraphEdge& edge, std::span<const RigidTransform> T_world_scan) {
+  const Vector6 error = registration::coordinates_of(error_of(edge, T_world_scan));
+  return {error.head<3>().norm(), error.tail<3>().norm(), error.dot(edge.covariance.llt().solve(error))};
+}
 
 PoseGraphResult optimize_pose_graph(std::size_t num_scans, std::span<const PoseGraphEdge> edges,
                                     const PoseGraphOptions& options, const RunContext& context) {

@@ -178,7 +178,7 @@ TEST(PoseGraph, PreciseEdgesOutweighVagueOnes) {
   const PoseGraphResult result = optimize_pose_graph(2, std::vector{precise, vague});
   EXPECT_LT(largest_angle(result, truth), 2e-5);
   EXPECT_EQ(result.edges[1].use, EdgeUse::Used);
-  EXPECT_NEAR(result.edges[1].rotation, 0.05, 1e-4);
+  EXPECT_NEAR(result.edges[1].disagreement.rotation, 0.05, 1e-4);
 }
 
 // Three edges in ten are wrong, and look a little surer than the right ones.
@@ -217,8 +217,8 @@ TEST(PoseGraph, AWrongClosureWithoutTrianglesIsDropped) {
   for (std::size_t e = 0; e < 12; ++e) EXPECT_EQ(result.edges[e].use, EdgeUse::Used);
   for (const std::size_t e : {12, 13}) {
     EXPECT_EQ(result.edges[e].use, EdgeUse::PosesDisagree);
-    EXPECT_GT(result.edges[e].rotation, 10 * kDegree);
-    EXPECT_GT(result.edges[e].chi_sq, 1000.0);
+    EXPECT_GT(result.edges[e].disagreement.rotation, 10 * kDegree);
+    EXPECT_GT(result.edges[e].disagreement.chi_sq, 1000.0);
   }
 }
 
@@ -232,7 +232,7 @@ TEST(PoseGraph, ContradictionWithoutAWitnessPlacesNothing) {
   EXPECT_EQ(result.group, (std::vector<std::size_t>{0, 0, 0, 1}));
   EXPECT_EQ(result.edges[3].use, EdgeUse::LoopsDisagree);
   EXPECT_EQ(result.edges[4].use, EdgeUse::LoopsDisagree);
-  EXPECT_TRUE(std::isnan(result.edges[3].chi_sq));
+  EXPECT_TRUE(std::isnan(result.edges[3].disagreement.chi_sq));
   // Where one is far surer, it wins.
   edges[3].confidence = 0.99;
   const PoseGraphResult decided = optimize_pose_graph(4, edges);

@@ -53,15 +53,21 @@ enum class EdgeUse : std::uint8_t {
                                                               {EdgeUse::PosesDisagree, "poses disagree"}}};
 }
 
+/// How poses differ from what was measured.
+struct EdgeDisagreement {
+  double rotation = 0.0;     ///< [rad]
+  double translation = 0.0;  ///< [input length unit]
+  double chi_sq = 0.0;       ///< [1] in standard deviations, squared; 6 are expected
+};
+[[nodiscard]] EdgeDisagreement measure_disagreement(const PoseGraphEdge& edge,
+                                                    std::span<const RigidTransform> T_world_scan);
+
 struct PoseGraphEdgeResult {
   EdgeUse use = EdgeUse::Used;
   double confidence = 0.0;  ///< [1] after the loops: those that close speak for an edge, those that do not, against it
   std::size_t loops_agree = 0;     ///< loops of two or three edges through it that close
   std::size_t loops_disagree = 0;  ///< ... and that do not
-  // How the final poses differ from the measurement; NaN between scans of different groups.
-  double rotation = 0.0;     ///< [rad]
-  double translation = 0.0;  ///< [input length unit]
-  double chi_sq = 0.0;       ///< [1] in standard deviations, squared; 6 are expected
+  EdgeDisagreement disagreement;   ///< of the final poses; NaN between scans of different groups
 };
 
 struct PoseGraphResult {
