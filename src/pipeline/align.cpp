@@ -87,9 +87,7 @@ class Alignment {
   [[nodiscard]] RigidTransform between_inputs(std::size_t target, std::size_t source, const RigidTransform& T) const {
     return shift(scans_[target].origin) * T * shift(-scans_[source].origin);
   }
-  [[nodiscard]] ScanView view(std::size_t scan) const {
-    return {&scans_[scan].full, &scans_[scan].samples};
-  }
+  [[nodiscard]] ScanView view(std::size_t scan) const { return {&scans_[scan].full, &scans_[scan].samples}; }
   [[nodiscard]] RigidTransform relative(const ScanIds& pair, const std::vector<RigidTransform>& poses) const {
     return poses[pair.first].inverse() * poses[pair.second];
   }

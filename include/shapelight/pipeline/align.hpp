@@ -77,4 +77,8 @@ struct AlignResult {
 [[nodiscard]] AlignResult align_scans(std::span<const Geometry> scans, const AlignOptions& options = {},
                                       const RunContext& context = {});
 
+/// All finite points of the placed scans (group 0) in the world frame, scan after scan, as one cloud: with the
+/// attributes that all of these scans have, and `scan`, the index of the scan.
+[[nodiscard]] Geometry merge_scans(std::span<const Geometry> scans, const AlignResult& aligned);
+
 }  // namespace shapelight
