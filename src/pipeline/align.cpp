@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "core/parallel.hpp"
@@ -72,6 +73,7 @@ class Alignment {
   [[nodiscard]] std::vector<ScanIds> neighbours() const;
   [[nodiscard]] std::vector<ScanIds> lost_and_placed() const;
   void register_pairs(const std::vector<ScanIds>& pairs, bool closes_loop, const RunContext& context);
+  void keep_better(const ScanIds& pair, const Registered& registered);
   [[nodiscard]] Registered register_pair(const ScanIds& pair, bool closes_loop, const RunContext& context) const;
   void solve();
   void close_loops(const RunContext& context);
@@ -139,6 +141,12 @@ std::vector<ScanIds> Alignment::lost_and_placed() const {
   return pairs;
 }
 
+// What was registered before stays unless the new pose is sure.
+void Alignment::keep_better(const ScanIds& pair, const Registered& registered) {
+  const auto [place, is_new] = registered_.try_emplace(pair, registered);
+  if (!is_new && registered.edge.confidence >= options_.min_confidence) place->second = registered;
+}
+
 // Pairs in parallel, each on one thread: there are many of them, and each is a chain of small loops.
 void Alignment::register_pairs(const std::vector<ScanIds>& pairs, bool closes_loop, const RunContext& context) {
   const RunContext quiet{context.max_threads, context.stop, {}};
@@ -147,7 +155,7 @@ void Alignment::register_pairs(const std::vector<ScanIds>& pairs, bool closes_lo
     parallel::run_chunks(quiet, batch.size(), [&](std::size_t i) {
       batch[i] = register_pair(pairs[begin + i], closes_loop, RunContext{1, context.stop, {}});
     });
-    for (std::size_t i = 0; i < batch.size(); ++i) registered_.insert_or_assign(pairs[begin + i], std::move(batch[i]));
+    for (std::size_t i = 0; i < batch.size(); ++i) keep_better(pairs[begin + i], batch[i]);
     context.report(static_cast<double>(begin + batch.size()) / static_cast<double>(pairs.size()));
   }
 }
@@ -217,12 +225,11 @@ std::vector<ScanIds> Alignment::overlapping_pairs() const {
 // Placed scans that overlap although their pair was not found, not sure or not tried: they are registered from where
 // they lie, as long as that brings new pairs.
 void Alignment::close_loops(const RunContext& context) {
+  std::set<ScanIds> tried;
   for (int round = 0; round < kMaxClosingRounds; ++round) {
     std::vector<ScanIds> pairs;
     for (const ScanIds& pair : overlapping_pairs()) {
-      const auto before = registered_.find(pair);
-      const bool was_tried = before != registered_.end() && before->second.closes_loop;
-      if (!was_tried && !is_used(pair)) pairs.push_back(pair);
+      if (!is_used(pair) && tried.insert(pair).second) pairs.push_back(pair);
     }
     if (pairs.empty()) break;
     register_pairs(pairs, true, context.phase(round / 3.0, (round + 1) / 3.0, "close loops"));
