@@ -32,7 +32,7 @@ def features(row):
         value["normal_agreement"],
         min(value["in_free_space"], 0.3),
         math.log(min(max(value["conditioning"], 1e-7), 1e-2)),
-        max(rival - 0.5, 0.0),
+        max(rival - 0.7, 0.0),
     ]
 
 
