@@ -49,11 +49,11 @@ class DescribedFlags {
 
   [[nodiscard]] bool was_given(std::string_view name) const { return typed_->count(std::string(name)) > 0; }
 
-  /// Overrides the members that were typed. Throws InvalidInput.
-  void apply(T& options) const {
+  /// Overrides the members that were typed. Lengths may be typed as shares of the diagonal: 2%. Throws InvalidInput.
+  void apply(T& options, double diagonal = 1.0) const {
     T::describe(options, [&](const OptionInfo& info, auto& member) {
       const auto found = typed_->find(std::string(info.name));
-      if (found != typed_->end()) parse(info, found->second, member);
+      if (found != typed_->end()) parse(info, found->second, diagonal, member);
     });
   }
 
@@ -100,11 +100,14 @@ class DescribedFlags {
   }
 
   template <class Member>
-  static void parse(const OptionInfo& info, const std::string& text, Member& member) {
+  static void parse(const OptionInfo& info, const std::string& text, double diagonal, Member& member) {
     if constexpr (std::is_same_v<Member, bool>) {
       member = !text.empty();
     } else if constexpr (std::is_enum_v<Member>) {
       member = parse_enum<Member>(info.name, text);
+    } else if (info.unit == "input length unit" && text.ends_with('%')) {
+      member = static_cast<Member>(parse_length(info.name, text).resolve(diagonal));
+      check_range(info, static_cast<double>(member));
     } else {
       const double value = parse_number(info.name, text, std::is_integral_v<Member> ? "a whole number" : "a number");
       check_range(info, value);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pipeline/sample_graph.hpp"
 #include "shapelight/core/error.hpp"
 #include "shapelight/sample/covariance.hpp"
 #include "shapelight/sample/normal_space.hpp"
@@ -126,25 +127,21 @@ SampleOptions sample_preset(Preset preset) {
   return options;
 }
 
-SampleResult sample(const Geometry& geometry, const SampleSize& size, const SampleOptions& options,
-                    const RunContext& context) {
+SampleResult sample_graph(const BuiltGraph& built, GeometryKind kind, const SampleSize& size,
+                          const SampleOptions& options, const RunContext& context) {
   validate(size);
   validate_options(options);
-  const RunContext prepare = context.phase(0.0, 0.35, "build graph");
-  const BuiltGraph built = needs_neighborhood(options) ? build_graph(geometry, options.fields.graph, prepare)
-                                                       : graph_of_places(geometry.positions, prepare);
   const SurfaceGraph& graph = built.graph;
   const Choice choice = choices(graph, options.skip_boundary);
 
   SampleResult result;
   result.diagnostics = built.diagnostics;
-  result.usable = geometry.size() - built.diagnostics.non_finite_points;
+  result.usable = graph.vertex_of_point.size() - built.diagnostics.non_finite_points;
   result.candidates = choice.candidates.size();
   const std::size_t count = count_of(size, result.usable, choice.candidates.size() + choice.last_resort.size());
   const SamplingTarget target{std::min(count, choice.candidates.size()), size.spacing.value_or(0.0)};
   if (!choice.candidates.empty()) {
-    result.indices = run_method(graph, geometry.kind(), choice.candidates, target, options, result,
-                                context.phase(0.35, 1.0, "sample"));
+    result.indices = run_method(graph, kind, choice.candidates, target, options, result, context);
     for (Index& v : result.indices) v = graph.global_id[v];
   }
   if (count > result.indices.size()) {
@@ -153,6 +150,17 @@ SampleResult sample(const Geometry& geometry, const SampleSize& size, const Samp
                           choice.last_resort.begin() + static_cast<std::ptrdiff_t>(result.last_resort));
   }
   context.check();
+  return result;
+}
+
+SampleResult sample(const Geometry& geometry, const SampleSize& size, const SampleOptions& options,
+                    const RunContext& context) {
+  validate(size);
+  validate_options(options);
+  const RunContext prepare = context.phase(0.0, 0.35, "build graph");
+  const BuiltGraph built = needs_neighborhood(options) ? build_graph(geometry, options.fields.graph, prepare)
+                                                       : graph_of_places(geometry.positions, prepare);
+  SampleResult result = sample_graph(built, geometry.kind(), size, options, context.phase(0.35, 1.0, "sample"));
   context.report(1.0, "done");
   return result;
 }

@@ -28,7 +28,9 @@ double box_distance_sq(const Point& min, const Point& max, const Point& query) {
 // The best `capacity` neighbours so far, kept sorted: at the sizes in use, shifting beats a heap.
 class KdTree::Candidates {
  public:
-  Candidates(std::size_t capacity, std::vector<Neighbor>& storage) : storage_(storage), capacity_(capacity) {
+  Candidates(std::size_t capacity, std::vector<Neighbor>& storage,
+             double limit_sq = std::numeric_limits<double>::infinity())
+      : storage_(storage), capacity_(capacity), worst_(limit_sq) {
     storage_.resize(capacity);
     best_ = storage_.data();
   }
@@ -56,7 +58,7 @@ class KdTree::Candidates {
   Neighbor* best_ = nullptr;
   std::size_t count_ = 0;
   std::size_t capacity_;
-  double worst_ = std::numeric_limits<double>::infinity();
+  double worst_;
 };
 
 KdTree::KdTree(std::span<const Vec3> points) : index_(points.size()) {
@@ -128,8 +130,8 @@ void KdTree::search(std::uint32_t node, const Point& query, Candidates& found) c
   if (far_sq <= found.worst()) search(far, query, found);
 }
 
-void KdTree::nearest(const Vec3& query, std::size_t k, std::vector<Neighbor>& found) const {
-  Candidates candidates(std::min(k, size()), found);
+void KdTree::nearest(const Vec3& query, std::size_t k, std::vector<Neighbor>& found, double limit_sq) const {
+  Candidates candidates(std::min(k, size()), found, limit_sq);
   if (k > 0 && !nodes_.empty()) search(0, to_array(query), candidates);
 }
 

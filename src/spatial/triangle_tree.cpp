@@ -8,7 +8,7 @@
 
 #include "core/parallel.hpp"
 #include "shapelight/core/error.hpp"
-#include "spatial/box_tree.hpp"
+#include "spatial/triangle_tree_impl.hpp"
 
 namespace shapelight {
 namespace {
@@ -61,15 +61,8 @@ Vec3 closest_point_on_triangle(const Vec3& query, const Vec3& a, const Vec3& b, 
   return foot_in_triangle(query, a, b, c);
 }
 
-namespace {
-
-struct Corners {
-  Vec3 a, b, c;
-  Index triangle;
-};
-
 // The closest point so far.
-struct Best {
+struct TriangleTree::Impl::Best {
   double distance_sq = kInfinity;
   float bound = std::numeric_limits<float>::infinity();  // boxes farther than this hold nothing better
   Index triangle = kNoIndex;
@@ -85,6 +78,8 @@ struct Best {
     point = found;
   }
 };
+
+namespace {
 
 // A query as floats, rounded down and up.
 struct QueryBox {
@@ -110,29 +105,6 @@ Float4 box_distances(const BoxNode& node, const QueryBox& query) {
 }
 
 }  // namespace
-
-// Everything is moved to the middle of the mesh and scaled by a power of two into [-1, 1]: boxes keep their precision
-// at any offset, squares neither overflow nor vanish, and scaling rounds nothing.
-struct TriangleTree::Impl {
-  Vec3 center = Vec3::Zero();
-  double scale = 1.0;
-  BoxTree tree;
-  std::vector<Corners> corners;  // in the order of the tree
-  std::vector<Index> place;      // of each triangle in that order
-
-  Impl(const TriangleMesh& mesh, const RunContext& context);
-  void choose_frame(const TriangleMesh& mesh);
-  [[nodiscard]] Vec3 to_local(const Vec3& p) const { return (p - center) * scale; }
-  [[nodiscard]] Hit closest(const Vec3& query, Index hint) const;
-  void search(const Vec3& query, Best& best) const;
-  void prefetch(std::uint32_t child) const {
-    if (child & BoxNode::kItem) {
-      __builtin_prefetch(&corners[child & ~BoxNode::kItem]);
-    } else {
-      __builtin_prefetch(&tree.nodes[child]);
-    }
-  }
-};
 
 TriangleTree::Impl::Impl(const TriangleMesh& mesh, const RunContext& context) {
   const std::size_t count = mesh.triangles.size();

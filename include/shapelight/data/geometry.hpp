@@ -57,6 +57,9 @@ struct Geometry {
 /// The points at `indices` in that order, with their attributes; triangles and pixels are left behind.
 [[nodiscard]] Geometry select_points(const Geometry& geometry, std::span<const Index> indices);
 
+/// Moves a geometry: positions, viewpoint, and the normals among the attributes (nx, ny, nz, of points and triangles).
+void transform_geometry(Geometry& geometry, const RigidTransform& T_new_old);
+
 /// Axis-aligned box of the finite points.
 struct BoundingBox {
   Vec3 min = Vec3::Zero();

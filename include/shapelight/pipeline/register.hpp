@@ -35,6 +35,7 @@ struct RegisterOptions {
   SamplingMethod sampler = SamplingMethod::Shape;
   double ratio = 0.0;         ///< [1] share of each scan's points that is registered; 0: 2000 to 10000 points
   bool skip_boundary = true;  ///< choose no points on the border of a scan: they have no counterpart
+  bool coarse = true;         ///< without a starting pose look for one; else start where the files say
   bool polish = true;         ///< at the end, a few steps of the sampled source against the full target's surface
   double max_distance = 0.0;  ///< [input length unit] of icp, plane and gicp; 0: a tenth of the target's diagonal
   std::uint64_t seed = 0;     ///< of samplers that draw at random
@@ -45,6 +46,8 @@ struct RegisterOptions {
     visit(OptionInfo{"sampler", "", "How points are chosen; both scans are thinned.", 0, 0}, o.sampler);
     visit(OptionInfo{"ratio", "1", "Share of each scan's points to register; 0: 2000 to 10000 points.", 0, 1}, o.ratio);
     visit(OptionInfo{"skip-boundary", "", "Choose no points on the border of a scan.", 0, 1}, o.skip_boundary);
+    visit(OptionInfo{"coarse", "", "Without --init look for a starting pose; else start where the files say.", 0, 1},
+          o.coarse);
     visit(OptionInfo{"polish", "", "At the end, a few steps against the full target.", 0, 1}, o.polish);
     visit(OptionInfo{"max-distance", "input length unit",
                      "Pairs farther apart have no say (icp, plane, gicp); 0: a tenth of the diagonal.", 0, 1e300},
@@ -59,7 +62,6 @@ struct PreparedScan {
   RegistrationCloud full;        ///< the distinct finite points that are no strays, with normals
   RegistrationCloud samples;     ///< those that carry its shape, with the normals of the full scan
   std::vector<Index> keypoints;  ///< of `full`, best first: where descriptors are taken
-  bool normals_look_at_sensor = false;
 };
 
 /// Thins a scan. Throws InvalidInput (too few points to register, by cause), TargetUnreachable, Cancelled.
@@ -73,6 +75,8 @@ struct RegisterResult {
   std::size_t source_samples = 0;
   std::size_t target_samples = 0;
   std::size_t hypotheses = 0;  ///< starting poses tried; 0 when one was given
+  double fit = 0.0;            ///< [1] how well the samples of the scan that fits better lie on the other one
+  double rival_fit = 0.0;      ///< [1] the same of the best pose that is another one, of those that were tried
   std::vector<std::string> warnings;
 };
 

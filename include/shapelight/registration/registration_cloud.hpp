@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "shapelight/core/run_context.hpp"
@@ -23,6 +24,7 @@ struct RegistrationCloud {
   KdTree tree;                 ///< over `position`
   double spacing = 0.0;        ///< [input length unit] median distance to the nearest other place; 0 below two places
   double diagonal = 0.0;       ///< [input length unit] of the bounding box
+  std::optional<Vec3> viewpoint;  ///< [input length unit] place of the sensor, when known; for assess_pose()
 };
 
 }  // namespace shapelight

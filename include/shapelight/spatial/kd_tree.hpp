@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -30,8 +31,10 @@ class KdTree {
   [[nodiscard]] std::size_t size() const { return index_.size(); }
   /// The nearest point; index kNoIndex in an empty tree.
   [[nodiscard]] Neighbor nearest(const Vec3& query) const;
-  /// The min(k, size()) nearest points into `found`, ascending; a point at the query's own place counts.
-  void nearest(const Vec3& query, std::size_t k, std::vector<Neighbor>& found) const;
+  /// The min(k, size()) nearest points into `found`, ascending; a point at the query's own place counts. Fewer when
+  /// only they are within the squared distance `limit_sq`, which makes the search shorter.
+  void nearest(const Vec3& query, std::size_t k, std::vector<Neighbor>& found,
+               double limit_sq = std::numeric_limits<double>::infinity()) const;
   /// All points with distance <= radius, ascending.
   void within(const Vec3& query, double radius, std::vector<Neighbor>& found) const;
 
