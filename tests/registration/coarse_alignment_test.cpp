@@ -42,7 +42,9 @@ Scan read_scan(const std::string& name) {
   scan.normals = graph.normal;
   SampleOptions options;
   options.skip_boundary = true;
-  for (const Index point : sample(geometry, {.count = 3000}, options).indices) {
+  SampleSize size;
+  size.count = 3000;
+  for (const Index point : sample(geometry, size, options).indices) {
     scan.keypoints.push_back(graph.vertex_of_point[point]);
   }
   return scan;
@@ -71,10 +73,6 @@ std::vector<PoseHypothesis> align(const Scan& source, const Scan& target, const 
   const double spacing = std::max(coarse_spacing(a), coarse_spacing(b));
   return align_coarsely(describe_points(a, source.keypoints, spacing, context),
                         describe_points(b, target.keypoints, spacing, context), options, context);
-}
-
-double angle_between(const RigidTransform& a, const RigidTransform& b) {
-  return Eigen::AngleAxisd(a.linear().transpose() * b.linear()).angle();
 }
 
 /// Mean distance between where two poses put the scan, in diagonals.

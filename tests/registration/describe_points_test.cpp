@@ -45,9 +45,12 @@ std::vector<Index> all_of(const RegistrationCloud& cloud) {
   return all;
 }
 
-std::vector<double> descriptor_at(const DescribedPoints& points, const Vec3& place) {
-  const Index i = KdTree(points.position).nearest(place).index;
+std::vector<double> descriptor(const DescribedPoints& points, std::size_t i) {
   return {points.descriptor.begin() + i * kBins, points.descriptor.begin() + (i + 1) * kBins};
+}
+
+std::vector<double> descriptor_at(const DescribedPoints& points, const Vec3& place) {
+  return descriptor(points, KdTree(points.position).nearest(place).index);
 }
 
 void expect_near(const std::vector<double>& a, const std::vector<double>& b, double tolerance) {
@@ -60,7 +63,7 @@ TEST(DescribePoints, PlaneIsFlat) {
   ASSERT_GT(points.size(), 100U);
   std::vector<double> expected(kBins, 0.0);
   for (std::size_t angle = 0; angle < 3; ++angle) expected[angle * kBins / 3 + kMiddle] = 2.0;
-  for (const Vec3& p : points.position) expect_near(descriptor_at(points, p), expected, 1e-5);
+  for (std::size_t i = 0; i < points.size(); ++i) expect_near(descriptor(points, i), expected, 1e-5);
 }
 
 // u = z, direction = x, v = -y, w = x: the first two angles are zero, the third is the tilt.
@@ -90,7 +93,7 @@ TEST(DescribePoints, SphereLooksAlikeEverywhere) {
   for (std::size_t i = 0; i < points.descriptor.size(); ++i) {
     mean[i % kBins] += points.descriptor[i] / static_cast<double>(points.size());
   }
-  for (const Vec3& p : points.position) expect_near(descriptor_at(points, p), mean, 0.1);
+  for (std::size_t i = 0; i < points.size(); ++i) expect_near(descriptor(points, i), mean, 0.1);
 }
 
 TEST(DescribePoints, TurnedNormalsMirrorTheSecondAndThirdAngle) {
