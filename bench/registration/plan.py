@@ -45,11 +45,9 @@ def pairs(data, real, meshes):
 
 def jobs(all_pairs, arguments):
     """The command lines, the longest first: [(name of the cell, arguments)]."""
-    low = ["--percent", "10,5", "--samplers", ",".join(SAMPLERS), "--starts", str(arguments.starts)]
-    high = ["--percent", "95,50,25", "--samplers", ",".join(FEW_SAMPLERS), "--starts", str(arguments.starts),
-            "--polished", "1"]
-    if arguments.quick:
-        low[1], high[1] = "5", "25"
+    common = ["--pixels", "400", "--polished", "1", "--starts", str(arguments.starts)]
+    low = [*common, "--samplers", ",".join(SAMPLERS), "--percent", "5" if arguments.quick else "10,5"]
+    high = [*common, "--samplers", ",".join(FEW_SAMPLERS), "--percent", "25" if arguments.quick else "95,50,25"]
     chosen_high = [name for name in ("bunny 45", "dragon 24", "armadillo-70", "bunny-75") if name in all_pairs]
     result = [(f"{name} high", words + high) for name, words in all_pairs.items()
               if name in chosen_high[:HIGH_PAIRS]]
