@@ -18,6 +18,7 @@ Command add_sample_command(CLI::App& app);
 Command add_fields_command(CLI::App& app);
 Command add_simplify_command(CLI::App& app);
 Command add_register_command(CLI::App& app);
+Command add_align_command(CLI::App& app);
 Command add_scan_command(CLI::App& app);
 Command add_metrics_command(CLI::App& app);
 Command add_info_command(CLI::App& app);

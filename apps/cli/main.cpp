@@ -68,10 +68,10 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", std::string("shapelight ") + SHAPELIGHT_VERSION);
   app.require_subcommand(1);
   app.get_formatter()->column_width(42);
-  const std::vector<Command> commands = {add_sample_command(app),   add_fields_command(app),  add_simplify_command(app),
-                                         add_register_command(app), add_metrics_command(app), add_render_command(app),
-                                         add_scan_command(app),     add_info_command(app),    add_convert_command(app),
-                                         add_formats_command(app)};
+  const std::vector<Command> commands = {add_sample_command(app),   add_fields_command(app), add_simplify_command(app),
+                                         add_register_command(app), add_align_command(app),  add_metrics_command(app),
+                                         add_render_command(app),   add_scan_command(app),   add_info_command(app),
+                                         add_convert_command(app),  add_formats_command(app)};
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

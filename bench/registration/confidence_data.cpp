@@ -1,7 +1,7 @@
 // What poses look like that are right, and what those that are wrong: one CSV row per registration, for the calibration
 // of the confidence (calibrate.py) and for counting how often a wrong pose is reported as good.
 //
-//   confidence_data MESH... [--runs N] [--seed S] [--part I/N]
+//   confidence_data MESH... [--pairs FOLDER] [--runs N] [--seed S] [--part I/N]
 //
 // Each run draws one of: two scans of one mesh from directions up to 150 degrees apart; scans of two different meshes;
 // scans of shapes that do not tell a pose (sphere, plane, cylinder, cube, slab with a corner); two scans of one mesh
@@ -14,8 +14,10 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
 #include <numbers>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -23,13 +25,16 @@
 #include "shapelight/core/error.hpp"
 #include "shapelight/data/triangle_mesh.hpp"
 #include "shapelight/io/io.hpp"
+#include "shapelight/io/transform.hpp"
 #include "shapelight/pipeline/register.hpp"
+#include "shapelight/pipeline/sample.hpp"
 #include "shapelight/spatial/triangle_tree.hpp"
 #include "shapelight/synthetic/virtual_scan.hpp"
 
 namespace {
 
 using namespace shapelight;
+constexpr std::size_t kFewest = 500;  // [points] of a scan that is worth a run
 constexpr double kDegree = std::numbers::pi / 180.0;
 
 struct Shape {
@@ -128,6 +133,13 @@ RigidTransform random_turn(Draw& draw, double angle) {
   return turn;
 }
 
+RigidTransform far_off(const RigidTransform& truth, const Geometry& target, Draw& draw) {
+  const Vec3 middle = bounding_box(target.positions).center();
+  RigidTransform about = random_turn(draw, draw.uniform(30.0, 180.0) * kDegree);
+  about.translation() = middle - about.linear() * middle;
+  return about * truth;
+}
+
 Case draw_case(const std::vector<Shape>& meshes, const std::vector<Shape>& ambiguous, Draw& draw) {
   const double kind = draw.uniform(0.0, 1.0);
   const double noise = 0.0005 * std::floor(draw.uniform(0.0, 5.0));
@@ -152,12 +164,74 @@ Case draw_case(const std::vector<Shape>& meshes, const std::vector<Shape>& ambig
          {}};
   if (second != &first) return c;
   c.truth = c.target.scan.T_mesh_scan.inverse() * c.source.scan.T_mesh_scan;
-  if (kind >= 0.85) {
-    const Vec3 middle = bounding_box(c.target.scan.geometry.positions).center();
-    RigidTransform about = random_turn(draw, draw.uniform(30.0, 180.0) * kDegree);
-    about.translation() = middle - about.linear() * middle;
-    c.init = about * *c.truth;
+  if (kind >= 0.85) c.init = far_off(*c.truth, c.target.scan.geometry, draw);
+  return c;
+}
+
+// Real scans, and the motions between those that belong together.
+struct RealPair {
+  std::string name;
+  Geometry source, target;
+  RigidTransform T_target_source;
+};
+
+std::vector<RealPair> read_pairs(const std::filesystem::path& folder) {
+  std::vector<RealPair> pairs;
+  std::ifstream list(folder / "pairs.csv");
+  std::string line;
+  std::getline(list, line);
+  while (std::getline(list, line)) {
+    std::istringstream cells(line);
+    std::string name, source, target, transform;
+    std::getline(cells, name, ',');
+    std::getline(cells, source, ',');
+    std::getline(cells, target, ',');
+    std::getline(cells, transform, ',');
+    ReadOptions options;
+    if (name.starts_with("kinect")) options.intrinsics = CameraIntrinsics{585.0, 585.0, 320.0, 240.0};
+    pairs.push_back({name, read_geometry(folder / source, options), read_geometry(folder / target, options),
+                     read_transform(folder / transform)});
   }
+  return pairs;
+}
+
+View thinned(const std::string& name, const Geometry& geometry, std::uint64_t count, bool keeps_viewpoint, Draw& draw) {
+  SampleOptions random;
+  random.method = SamplingMethod::Random;
+  random.seed = static_cast<std::uint64_t>(draw.uniform(0.0, 1e9));
+  SampleSize size;
+  size.count = std::min<std::uint64_t>(count, geometry.size() / 2);
+  View view{{select_points(geometry, sample(geometry, size, random).indices), RigidTransform::Identity()}, name};
+  if (!keeps_viewpoint) view.scan.geometry.viewpoint.reset();
+  const RigidTransform T_scan_file = random_turn(draw, draw.uniform(0.0, std::numbers::pi));
+  transform_geometry(view.scan.geometry, T_scan_file);
+  view.scan.T_mesh_scan = T_scan_file.inverse();  // "mesh": the file's frame
+  return view;
+}
+
+// Pairs of one place overlap with each other: the depth frames show the red kitchen as well.
+std::string place_of(const std::string& name) {
+  const std::string place = name.substr(0, name.find('_'));
+  return place == "kinect" ? "redkitchen" : place;
+}
+
+Case draw_real_case(const std::vector<RealPair>& pairs, Draw& draw) {
+  const double kind = draw.uniform(0.0, 1.0);
+  const bool viewpoint = draw.uniform(0.0, 1.0) < 0.5;
+  const std::size_t first = draw.below(pairs.size());
+  std::size_t second = first;
+  while (kind >= 0.7 && place_of(pairs[second].name) == place_of(pairs[first].name)) second = draw.below(pairs.size());
+  const auto count = static_cast<std::uint64_t>(draw.uniform(10000.0, 30000.0));
+  Case c{kind >= 0.7   ? "real, different"
+         : kind >= 0.4 ? "real, bad start"
+                       : "real",
+         thinned(pairs[second].name, pairs[second].source, count, viewpoint, draw),
+         thinned(pairs[first].name, pairs[first].target, count, viewpoint, draw),
+         {},
+         {}};
+  if (second != first) return c;
+  c.truth = c.target.scan.T_mesh_scan.inverse() * pairs[first].T_target_source * c.source.scan.T_mesh_scan;
+  if (kind >= 0.4) c.init = far_off(*c.truth, c.target.scan.geometry, draw);
   return c;
 }
 
@@ -169,7 +243,7 @@ void report(std::uint64_t run, const Case& c, const RegisterResult& result) {
     rotation = Eigen::AngleAxisd(c.truth->linear().transpose() * result.T_target_source.linear()).angle() / kDegree;
     shift = (*c.truth * box.center() - result.T_target_source * box.center()).norm() / box.diagonal();
   }
-  fmt::print("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", run, c.kind, c.source.shape,
+  fmt::print("{},\"{}\",{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", run, c.kind, c.source.shape,
              c.target.shape, c.source.scan.geometry.viewpoint.has_value() ? 1 : 0, rotation, shift, pose.overlap,
              pose.gate / box.diagonal(), pose.residual / box.diagonal(), pose.contrast, pose.normal_agreement,
              pose.in_free_space, pose.conditioning, pose.weakest.uncertainty / box.diagonal(), pose.reciprocal.share,
@@ -179,10 +253,13 @@ void report(std::uint64_t run, const Case& c, const RegisterResult& result) {
 
 int run(int argc, char** argv) {
   std::vector<Shape> meshes;
+  std::vector<RealPair> pairs;
   std::uint64_t runs = 200, seed = 1, part = 0, parts = 1;
   for (int i = 1; i < argc; ++i) {
     const std::string argument = argv[i];
-    if (argument == "--runs" && i + 1 < argc) {
+    if (argument == "--pairs" && i + 1 < argc) {
+      pairs = read_pairs(argv[++i]);
+    } else if (argument == "--runs" && i + 1 < argc) {
       runs = std::stoull(argv[++i]);
     } else if (argument == "--seed" && i + 1 < argc) {
       seed = std::stoull(argv[++i]);
@@ -203,7 +280,9 @@ int run(int argc, char** argv) {
       "in_free_space,conditioning,uncertainty,reciprocal_share,fit,rival_fit,inlier_ratio,confidence\n");
   for (std::uint64_t i = part; i < runs; i += parts) {
     Draw draw(seed, i);
-    const Case c = draw_case(meshes, ambiguous, draw);
+    const bool is_real = !pairs.empty() && draw.uniform(0.0, 1.0) < 0.5;
+    const Case c = is_real ? draw_real_case(pairs, draw) : draw_case(meshes, ambiguous, draw);
+    if (std::min(c.source.scan.geometry.size(), c.target.scan.geometry.size()) < kFewest) continue;  // seen edge-on
     report(i, c, register_scans(c.source.scan.geometry, c.target.scan.geometry, c.init, {}, {.max_threads = 1}));
   }
   return 0;

@@ -19,7 +19,33 @@ struct ComponentSide {
   double outward = 0.0;    // sum of area n . (p - c), or towards the viewpoint
   double magnitude = 0.0;  // sum of area |p - c|
   double up = 0.0;         // sum of area n_z
+
+  [[nodiscard]] bool is_inside_out() const {
+    const bool shape_decides = std::abs(outward) > kFlat * magnitude;
+    return (shape_decides ? outward : up) < 0.0;
+  }
 };
+
+// At the roots of the components.
+std::vector<ComponentSide> component_sides(const SurfaceGraph& graph, const std::vector<Index>& root,
+                                           const std::optional<Vec3>& viewpoint) {
+  std::vector<ComponentSide> sides(graph.size());
+  for (std::size_t i = 0; i < graph.size(); ++i) {
+    ComponentSide& side = sides[root[i]];
+    side.center += graph.area[i] * graph.position[i];
+    side.area += graph.area[i];
+  }
+  for (std::size_t i = 0; i < graph.size(); ++i) {
+    ComponentSide& side = sides[root[i]];
+    const Vec3 center = viewpoint ? Vec3(*viewpoint - graph.origin) : Vec3(side.center / std::max(side.area, 1e-300));
+    Vec3 outward = graph.position[i] - center;
+    if (viewpoint) outward = -outward.normalized();
+    side.outward += graph.area[i] * graph.normal[i].dot(outward);
+    side.magnitude += graph.area[i] * outward.norm();
+    side.up += graph.area[i] * graph.normal[i].z();
+  }
+  return sides;
+}
 
 // Isolated vertices that lie on the surface all the same, such as those that no triangle of a mesh uses, are no strays.
 void flag_isolated(SurfaceGraph& graph) {
@@ -68,28 +94,22 @@ void finish_graph(BuiltGraph& built, const RunContext& context) {
 }
 
 void orient_components(SurfaceGraph& graph, const std::optional<Vec3>& viewpoint) {
-  const std::size_t n = graph.size();
   const std::vector<Index> root = component_roots(graph);
-  std::vector<ComponentSide> sides(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    ComponentSide& side = sides[root[i]];
-    side.center += graph.area[i] * graph.position[i];
-    side.area += graph.area[i];
+  const std::vector<ComponentSide> sides = component_sides(graph, root, viewpoint);
+  for (std::size_t i = 0; i < graph.size(); ++i) {
+    if (sides[root[i]].is_inside_out()) graph.normal[i] = -graph.normal[i];
   }
-  for (std::size_t i = 0; i < n; ++i) {
-    ComponentSide& side = sides[root[i]];
-    const Vec3 center = viewpoint ? Vec3(*viewpoint - graph.origin) : Vec3(side.center / std::max(side.area, 1e-300));
-    Vec3 outward = graph.position[i] - center;
-    if (viewpoint) outward = -outward.normalized();
-    side.outward += graph.area[i] * graph.normal[i].dot(outward);
-    side.magnitude += graph.area[i] * outward.norm();
-    side.up += graph.area[i] * graph.normal[i].z();
+}
+
+void orient_as_one(SurfaceGraph& graph, const std::optional<Vec3>& viewpoint) {
+  ComponentSide whole;
+  for (const ComponentSide& side : component_sides(graph, component_roots(graph), viewpoint)) {
+    whole.outward += side.outward;
+    whole.magnitude += side.magnitude;
+    whole.up += side.up;
   }
-  for (std::size_t i = 0; i < n; ++i) {
-    const ComponentSide& side = sides[root[i]];
-    const bool shape_decides = std::abs(side.outward) > kFlat * side.magnitude;
-    if ((shape_decides ? side.outward : side.up) < 0.0) graph.normal[i] = -graph.normal[i];
-  }
+  if (!whole.is_inside_out()) return;
+  for (Vec3& normal : graph.normal) normal = -normal;
 }
 
 }  // namespace shapelight

@@ -16,4 +16,8 @@ void finish_graph(BuiltGraph& built, const RunContext& context);
 /// an open one is taken to bulge towards the outside. A component that is nearly flat looks to +z.
 void orient_components(SurfaceGraph& graph, const std::optional<Vec3>& viewpoint);
 
+/// The same for all components together, each about its own centre: when they are wound alike, as the pixels of one
+/// range image are.
+void orient_as_one(SurfaceGraph& graph, const std::optional<Vec3>& viewpoint);
+
 }  // namespace shapelight

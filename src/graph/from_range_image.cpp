@@ -99,7 +99,7 @@ BuiltGraph graph_from_range_image(std::span<const Vec3> positions, const RangeGr
   const RunContext cut = context.phase(0.0, 0.3, "cut depth jumps");
   const std::vector<Triangle> triangles = range_image_triangles(positions, grid, viewpoint, options.depth_jump);
   BuiltGraph built = graph_from_mesh(positions, triangles, context.phase(0.3, 1.0, "connect pixels"));
-  orient_components(built.graph, viewpoint);
+  orient_as_one(built.graph, viewpoint);
   return built;
 }
 

@@ -51,7 +51,7 @@ RigidTransform polish(const PreparedScan& source, const PreparedScan& target, co
   std::vector<registration::SurfacePair> pairs =
       registration::pair_surfaces(source.samples, target.full, T_target_source, context);
   const double widest = registration::widest_gate(source.full, target.full);
-  registration::make_normals_agree(pairs, widest);
+  registration::forget_sides(pairs, source.full, target.full);
   IcpOptions icp;
   icp.metric = IcpMetric::Plane;
   icp.max_distance = registration::find_gate(pairs, widest, kPolishGate * target.full.spacing).width;
@@ -70,18 +70,17 @@ struct Attempt {
 Attempt attempt_from(const PreparedScan& source, const PreparedScan& target, const RigidTransform& start,
                      const RegisterOptions& options, const RunContext& context) {
   Attempt attempt;
-  attempt.registration = run_method(source, target, start, options, context);
+  attempt.registration = run_method(source, target, start, options, context.phase(0.0, 0.7, "register"));
   attempt.T_target_source = attempt.registration.T_target_source;
-  if (options.polish) attempt.T_target_source = polish(source, target, attempt.T_target_source, context);
+  if (options.polish) {
+    attempt.T_target_source = polish(source, target, attempt.T_target_source, context.phase(0.7, 1.0, "polish"));
+  }
   attempt.fit = fit_of_samples(source, target, attempt.T_target_source, context);
   return attempt;
 }
 
-// The best attempt first.
-std::vector<Attempt> attempts_from(const PreparedScan& source, const PreparedScan& target,
-                                   const std::vector<RigidTransform>& starts, const RegisterOptions& options,
-                                   const RunContext& context) {
-  std::vector<Attempt> attempts;
+void attempt_all(const PreparedScan& source, const PreparedScan& target, std::span<const RigidTransform> starts,
+                 const RegisterOptions& options, std::vector<Attempt>& attempts, const RunContext& context) {
   for (std::size_t i = 0; i < starts.size(); ++i) {
     const auto fraction = [&](std::size_t done) {
       return static_cast<double>(done) / static_cast<double>(starts.size());
@@ -90,6 +89,15 @@ std::vector<Attempt> attempts_from(const PreparedScan& source, const PreparedSca
         attempt_from(source, target, starts[i], options, context.phase(fraction(i), fraction(i + 1), "register")));
   }
   std::stable_sort(attempts.begin(), attempts.end(), [](const Attempt& a, const Attempt& b) { return a.fit > b.fit; });
+}
+
+// The best attempt first; then what the best would be were the source turned to look like itself again.
+std::vector<Attempt> attempts_from(const PreparedScan& source, const PreparedScan& target, StartingPoses starts,
+                                   const RegisterOptions& options, const RunContext& context) {
+  std::vector<Attempt> attempts;
+  attempt_all(source, target, starts.T_target_source, options, attempts, context.phase(0.0, 0.7, "register"));
+  for (RigidTransform& start : starts.T_source_source) start = attempts.front().T_target_source * start;
+  attempt_all(source, target, starts.T_source_source, options, attempts, context.phase(0.7, 1.0, "look for rivals"));
   return attempts;
 }
 
@@ -121,11 +129,15 @@ RegisterResult register_scans(const PreparedScan& source, const PreparedScan& ta
                               const RunContext& context) {
   validate_options(options);
   const bool search = !T_target_source_init && options.coarse;
-  const std::vector<RigidTransform> starts =
-      search ? starting_poses(source, target, context.phase(0.0, 0.4, "find starting poses"))
-             : std::vector{to_origins(T_target_source_init.value_or(RigidTransform::Identity()), source, target)};
+  StartingPoses starts;
+  if (search) {
+    starts = find_starting_poses(source, target, context.phase(0.0, 0.4, "find starting poses"));
+  } else {
+    const RigidTransform init = T_target_source_init.value_or(RigidTransform::Identity());
+    starts.T_target_source.push_back(to_origins(init, source, target));
+  }
   std::vector<Attempt> attempts =
-      attempts_from(source, target, starts, options, context.phase(search ? 0.4 : 0.0, 0.8, "register"));
+      attempts_from(source, target, std::move(starts), options, context.phase(search ? 0.4 : 0.0, 0.8, "register"));
 
   RegisterResult result;
   Attempt& best = attempts.front();
@@ -137,7 +149,7 @@ RegisterResult register_scans(const PreparedScan& source, const PreparedScan& ta
   result.registration = std::move(best.registration);
   result.source_samples = source.samples.size();
   result.target_samples = target.samples.size();
-  result.hypotheses = search ? starts.size() : 0;
+  result.hypotheses = search ? attempts.size() : 0;
   return result;
 }
 

@@ -21,25 +21,42 @@ double mean_fit(std::span<const registration::SurfacePair> pairs, double reach) 
   return pairs.empty() ? 0.0 : sum / static_cast<double>(pairs.size());
 }
 
+// Motions that bring much of a scan onto itself.
+std::vector<RigidTransform> self_similarities(const DescribedPoints& described, double diagonal,
+                                              const RunContext& context) {
+  constexpr double kEnough = 0.25;  // of the matches that the scan has with itself in place
+  const std::vector<PoseHypothesis> hypotheses = align_coarsely(described, described, {.same_side = true}, context);
+  std::vector<RigidTransform> motions;
+  for (const PoseHypothesis& hypothesis : hypotheses) {
+    const bool is_rest = are_alike(hypothesis.T_target_source, RigidTransform::Identity(), diagonal);
+    if (!is_rest && hypothesis.support >= kEnough * hypotheses.front().support) {
+      motions.push_back(hypothesis.T_target_source);
+    }
+  }
+  return motions;
+}
+
 }  // namespace
 
-std::vector<RigidTransform> starting_poses(const PreparedScan& source, const PreparedScan& target,
-                                           const RunContext& context) {
+StartingPoses find_starting_poses(const PreparedScan& source, const PreparedScan& target, const RunContext& context) {
   const double spacing = std::max(coarse_spacing(source.full), coarse_spacing(target.full));
   const DescribedPoints described_source =
       describe_points(source.full, source.keypoints, spacing, context.phase(0.0, 0.4, "describe keypoints"));
   const DescribedPoints described_target =
       describe_points(target.full, target.keypoints, spacing, context.phase(0.4, 0.8, "describe keypoints"));
   const bool same_side = source.full.viewpoint.has_value() && target.full.viewpoint.has_value();
-  const std::vector<PoseHypothesis> hypotheses =
-      align_coarsely(described_source, described_target, {.same_side = same_side}, context.phase(0.8, 1.0, "match"));
 
-  std::vector<RigidTransform> poses;
-  for (const PoseHypothesis& hypothesis : hypotheses) poses.push_back(hypothesis.T_target_source);
+  StartingPoses starts;
+  for (const PoseHypothesis& hypothesis : align_coarsely(described_source, described_target, {.same_side = same_side},
+                                                         context.phase(0.8, 0.9, "match keypoints"))) {
+    starts.T_target_source.push_back(hypothesis.T_target_source);
+  }
   RigidTransform in_place = RigidTransform::Identity();
   in_place.translation() = source.origin - target.origin;
-  poses.push_back(in_place);
-  return poses;
+  starts.T_target_source.push_back(in_place);
+  starts.T_source_source =
+      self_similarities(described_source, source.full.diagonal, context.phase(0.9, 1.0, "match keypoints"));
+  return starts;
 }
 
 double fit_of_samples(const PreparedScan& source, const PreparedScan& target, const RigidTransform& T_target_source,
@@ -50,8 +67,8 @@ double fit_of_samples(const PreparedScan& source, const PreparedScan& target, co
       registration::pair_surfaces(source.samples, target.full, T_target_source, context);
   std::vector<registration::SurfacePair> backward =
       registration::pair_surfaces(target.samples, source.full, T_target_source.inverse(), context);
-  registration::make_normals_agree(forward, reach);
-  registration::make_normals_agree(backward, reach);
+  registration::forget_sides(forward, source.full, target.full);
+  registration::forget_sides(backward, source.full, target.full);
   return std::max(mean_fit(forward, reach), mean_fit(backward, reach));
 }
 

@@ -7,10 +7,15 @@
 
 namespace shapelight {
 
-/// Poses worth starting from when none is known: those of the coarse alignment, best supported first, and that of the
-/// files, since many scans come roughly in place. Between the scans' origins.
-[[nodiscard]] std::vector<RigidTransform> starting_poses(const PreparedScan& source, const PreparedScan& target,
-                                                         const RunContext& context);
+/// Where to look for a pose when none is known. Between the scans' origins.
+struct StartingPoses {
+  /// Of the coarse alignment, best supported first, and that of the files, since many scans come roughly in place.
+  std::vector<RigidTransform> T_target_source;
+  /// Motions after which the source looks much like itself, as a cube does: every pose has a rival for each of them.
+  std::vector<RigidTransform> T_source_source;
+};
+[[nodiscard]] StartingPoses find_starting_poses(const PreparedScan& source, const PreparedScan& target,
+                                                const RunContext& context);
 
 /// How well a pose fits on the samples, in [0, 1]: each counts 1 - (d / reach)^2 when the other scan's surface is
 /// within reach (1 % of the smaller diagonal) and faces the same way; of the scan that fits better.

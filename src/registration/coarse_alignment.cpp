@@ -3,83 +3,139 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/parallel.hpp"
 #include "registration/compatibility.hpp"
 #include "registration/match_descriptors.hpp"
-#include "registration/tune.hpp"
-#include "shapelight/core/error.hpp"
 
 namespace shapelight {
 namespace {
 
-struct Problem {
-  const DescribedPoints& source;
-  const DescribedPoints& target;
-  std::vector<Match> matches;
-  double tolerance;
-};
+constexpr double kTolerance = 1.5;    // [spacings] two thinned scans put a point at places that differ by about one
+constexpr double kMinCosine = 0.7;    // of normals that agree
+constexpr double kNormalWeight = 4;   // [tolerances squared] of a pair of normals against a pair of places
+constexpr std::size_t kSeeds = 200;   // matches that groups grow from
+constexpr std::size_t kFriends = 20;  // of a seed, that the first pose is fitted to
+constexpr int kRefits = 2;
+constexpr std::size_t kMinSupport = 4;  // three pairs fit some pose always
+constexpr double kAlike = 3.0;          // [tolerances] poses that move the scan apart by less are one
+constexpr std::size_t kChunk = 8;       // seeds
 
-RigidTransform fit(const Problem& problem, std::span<const std::size_t> chosen) {
-  Vec3 ps = Vec3::Zero(), qs = Vec3::Zero();
-  for (auto i : chosen) {
-    ps += problem.source.position[problem.matches[i].source];
-    qs += problem.target.position[problem.matches[i].target];
+std::vector<PlacePair> place_pairs(const DescribedPoints& source, const DescribedPoints& target,
+                                   std::span<const Match> matches) {
+  std::vector<PlacePair> pairs;
+  pairs.reserve(matches.size());
+  for (const Match& match : matches) {
+    pairs.push_back({source.position[match.source], target.position[match.target], source.normal[match.source],
+                     (match.turned ? -1.0 : 1.0) * target.normal[match.target]});
   }
-  ps /= double(chosen.size());
-  qs /= double(chosen.size());
-  Eigen::Matrix3d H = Eigen::Matrix3d::Zero();
-  const double s2 = problem.tolerance * problem.tolerance * 4;
-  for (auto i : chosen) {
-    const Match& m = problem.matches[i];
-    H += (problem.source.position[m.source] - ps) * (problem.target.position[m.target] - qs).transpose();
-    H += s2 * problem.source.normal[m.source] * (m.turned ? -1.0 : 1.0) * problem.target.normal[m.target].transpose();
-  }
-  Eigen::JacobiSVD<Eigen::Matrix3d> svd(H, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Eigen::Matrix3d D = Eigen::Matrix3d::Identity();
-  D(2, 2) = (svd.matrixV() * svd.matrixU().transpose()).determinant() < 0 ? -1 : 1;
-  RigidTransform T = RigidTransform::Identity();
-  T.linear() = svd.matrixV() * D * svd.matrixU().transpose();
-  T.translation() = qs - T.linear() * ps;
-  return T;
+  return pairs;
 }
 
-std::vector<std::size_t> inliers(const Problem& problem, const RigidTransform& T) {
-  std::vector<std::size_t> in;
-  const double limit = problem.tolerance * problem.tolerance;
-  for (std::size_t i = 0; i < problem.matches.size(); ++i) {
-    const Match& m = problem.matches[i];
-    if ((T * problem.source.position[m.source] - problem.target.position[m.target]).squaredNorm() > limit) continue;
-    const double cosine = (T.linear() * problem.source.normal[m.source]).dot(problem.target.normal[m.target]);
-    if ((m.turned ? -cosine : cosine) < tune::VCOS) continue;
-    in.push_back(i);
+/// The pairs that are compatible with most others, no two at the same places.
+std::vector<std::size_t> choose_seeds(std::span<const PlacePair> pairs, const CompatibilityGraph& graph,
+                                      double tolerance) {
+  std::vector<std::pair<int, std::size_t>> order;
+  order.reserve(pairs.size());
+  for (std::size_t i = 0; i < pairs.size(); ++i) order.emplace_back(-graph.degree(i), i);
+  std::sort(order.begin(), order.end());
+  std::vector<std::size_t> seeds;
+  const double near_sq = tolerance * tolerance;
+  for (const auto& [degree, i] : order) {
+    const PlacePair& pair = pairs[i];
+    const bool is_taken = std::any_of(seeds.begin(), seeds.end(), [&](std::size_t s) {
+      return (pairs[s].source - pair.source).squaredNorm() < near_sq &&
+             (pairs[s].target - pair.target).squaredNorm() < near_sq;
+    });
+    if (!is_taken) seeds.push_back(i);
+    if (seeds.size() == kSeeds) break;
   }
-  return in;
+  return seeds;
 }
 
-struct Candidate {
-  RigidTransform T;
-  double score;
-};
-
-// share of keypoints (both ways) that lie on the other
-double verify(const DescribedPoints& a, const DescribedPoints& b, const KdTree& tree, const RigidTransform& T, bool same_side) {
-  int plus = 0, minus = 0;
-  const double limit = std::pow(tune::VTOL * b.spacing, 2);
-  for (Index k : a.keypoints) {
-    const Neighbor near = tree.nearest(T * a.position[k]);
-    if (near.distance_sq > limit) continue;
-    const double cosine = (T.linear() * a.normal[k]).dot(b.normal[near.index]);
-    plus += cosine > tune::VCOS;
-    minus += cosine < -tune::VCOS;
-  }
-  (void)same_side;
-  return (same_side ? plus : plus + minus) / double(a.keypoints.size());
+/// The seed and the pairs with which it has most friends in common.
+std::vector<std::size_t> closest_friends(const CompatibilityGraph& graph, std::size_t seed) {
+  std::vector<std::pair<int, std::size_t>> friends;
+  graph.for_each_compatible(seed, [&](std::size_t j) { friends.emplace_back(-graph.common(seed, j), j); });
+  const std::size_t count = std::min(kFriends, friends.size());
+  std::partial_sort(friends.begin(), friends.begin() + static_cast<std::ptrdiff_t>(count), friends.end());
+  std::vector<std::size_t> group{seed};
+  for (std::size_t f = 0; f < count; ++f) group.push_back(friends[f].second);
+  return group;
 }
 
-bool alike(const RigidTransform& a, const RigidTransform& b, const Vec3& center, double radius, double tolerance) {
-  const double angle = Eigen::AngleAxisd(a.linear().transpose() * b.linear()).angle();
-  return (a * center - b * center).norm() + angle * radius < tolerance;
+/// The motion that best brings the chosen sources and their normals onto the targets and theirs (Kabsch 1976).
+RigidTransform fit(std::span<const PlacePair> pairs, std::span<const std::size_t> chosen, double tolerance) {
+  Vec3 source_mean = Vec3::Zero();
+  Vec3 target_mean = Vec3::Zero();
+  for (const std::size_t i : chosen) {
+    source_mean += pairs[i].source / static_cast<double>(chosen.size());
+    target_mean += pairs[i].target / static_cast<double>(chosen.size());
+  }
+  Eigen::Matrix3d correlation = Eigen::Matrix3d::Zero();
+  const double normal_weight = kNormalWeight * tolerance * tolerance;
+  for (const std::size_t i : chosen) {
+    correlation += (pairs[i].target - target_mean) * (pairs[i].source - source_mean).transpose();
+    correlation += normal_weight * pairs[i].target_normal * pairs[i].source_normal.transpose();
+  }
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(correlation, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Vec3 sign = Vec3::Ones();
+  if ((svd.matrixU() * svd.matrixV().transpose()).determinant() < 0.0) sign.z() = -1.0;
+  RigidTransform T_target_source = RigidTransform::Identity();
+  T_target_source.linear() = svd.matrixU() * sign.asDiagonal() * svd.matrixV().transpose();
+  T_target_source.translation() = target_mean - T_target_source.linear() * source_mean;
+  return T_target_source;
+}
+
+std::vector<std::size_t> agreeing(std::span<const PlacePair> pairs, const RigidTransform& T_target_source,
+                                  double tolerance) {
+  std::vector<std::size_t> group;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const PlacePair& pair = pairs[i];
+    if ((T_target_source * pair.source - pair.target).squaredNorm() < tolerance * tolerance &&
+        (T_target_source.linear() * pair.source_normal).dot(pair.target_normal) > kMinCosine) {
+      group.push_back(i);
+    }
+  }
+  return group;
+}
+
+/// The pose of a group, fitted again to whatever agrees with it; no support when that is too little.
+PoseHypothesis grow(std::span<const PlacePair> pairs, std::vector<std::size_t> group, double tolerance) {
+  PoseHypothesis pose;
+  for (int pass = 0; pass <= kRefits; ++pass) {
+    if (group.size() < kMinSupport) return {};
+    pose.T_target_source = fit(pairs, group, tolerance);
+    group = agreeing(pairs, pose.T_target_source, tolerance);
+  }
+  if (group.size() < kMinSupport) return {};
+  pose.support = static_cast<double>(group.size());
+  return pose;
+}
+
+/// The best supported poses, leaving out those that put the scan where a better one does.
+std::vector<PoseHypothesis> distinct(std::vector<PoseHypothesis> poses, std::span<const Vec3> scan, double apart,
+                                     int count) {
+  std::stable_sort(poses.begin(), poses.end(),
+                   [](const PoseHypothesis& a, const PoseHypothesis& b) { return a.support > b.support; });
+  Vec3 center = Vec3::Zero();
+  for (const Vec3& p : scan) center += p / static_cast<double>(scan.size());
+  double radius_sq = 0.0;
+  for (const Vec3& p : scan) radius_sq += (p - center).squaredNorm() / static_cast<double>(scan.size());
+
+  std::vector<PoseHypothesis> kept;
+  for (const PoseHypothesis& pose : poses) {
+    if (pose.support == 0.0 || kept.size() == static_cast<std::size_t>(count)) break;
+    const RigidTransform& a = pose.T_target_source;
+    const bool is_old = std::any_of(kept.begin(), kept.end(), [&](const PoseHypothesis& other) {
+      const RigidTransform& b = other.T_target_source;
+      const double angle = Eigen::AngleAxisd(a.linear().transpose() * b.linear()).angle();
+      return (a * center - b * center).norm() + angle * std::sqrt(radius_sq) < apart;
+    });
+    if (!is_old) kept.push_back(pose);
+  }
+  return kept;
 }
 
 }  // namespace
@@ -87,91 +143,22 @@ bool alike(const RigidTransform& a, const RigidTransform& b, const Vec3& center,
 std::vector<PoseHypothesis> align_coarsely(const DescribedPoints& source, const DescribedPoints& target,
                                            const CoarseAlignmentOptions& options, const RunContext& context) {
   validate_options(options);
-  const double tolerance = tune::TOL * std::max(source.spacing, target.spacing);
-  Problem problem{source, target, match_descriptors(source, target, options.same_side, context), tolerance};
-  const auto& matches = problem.matches;
-  const CompatibilityGraph graph(source, target, matches, tolerance, context);
-  const std::size_t n = graph.size();
-  if (n < 3) return {};
+  const double tolerance = kTolerance * std::max(source.spacing, target.spacing);
+  const std::vector<PlacePair> pairs =
+      place_pairs(source, target, match_descriptors(source, target, options.same_side, context));
+  const CompatibilityGraph graph(pairs, tolerance, context);
+  const std::vector<std::size_t> seeds = choose_seeds(pairs, graph, tolerance);
 
-  // leading eigenvector
-  std::vector<double> score(n, 1.0), next(n);
-  for (int pass = 0; pass < 6; ++pass) {
-    double norm = 0;
-    for (std::size_t i = 0; i < n; ++i) {
-      double sum = 0;
-      graph.for_each(i, [&](std::size_t j) { sum += score[j]; });
-      next[i] = sum;
-      norm = std::max(norm, sum);
-    }
-    if (norm == 0) return {};
-    for (std::size_t i = 0; i < n; ++i) score[i] = next[i] / norm;
-  }
-  std::vector<std::size_t> order(n);
-  for (std::size_t i = 0; i < n; ++i) order[i] = i;
-  const double mode = tune::env("SEEDMODE", 0);
-  if (mode == 1) for (std::size_t i = 0; i < n; ++i) { score[i] = 0; for (auto w : graph.row(i)) score[i] += std::popcount(w); }
-  std::sort(order.begin(), order.end(), [&](auto a, auto b) { return score[a] > score[b] || (score[a] == score[b] && a < b); });
-  std::vector<std::size_t> seeds;
-  const double near2 = std::pow(tolerance * tune::env("SEEDNMS", 1.0), 2);
-  for (std::size_t i : order) {
-    if (seeds.size() >= tune::SEEDS) break;
-    bool taken = false;
-    for (std::size_t s : seeds)
-      if ((source.position[matches[s].source] - source.position[matches[i].source]).squaredNorm() < near2 &&
-          (target.position[matches[s].target] - target.position[matches[i].target]).squaredNorm() < near2) {
-        taken = true;
-        break;
-      }
-    if (!taken) seeds.push_back(i);
-  }
-  std::vector<Candidate> candidates;
-  for (std::size_t s : seeds) {
-    std::vector<std::pair<int, std::size_t>> friends;
-    graph.for_each(s, [&](std::size_t j) { friends.emplace_back(-graph.common(s, j), j); });
-    if (friends.size() < 2) continue;
-    std::sort(friends.begin(), friends.end());
-    if (friends.size() > tune::KSEED) friends.resize(std::size_t(tune::KSEED));
-    std::vector<std::size_t> chosen{s};
-    for (auto& f : friends) chosen.push_back(f.second);
-    Candidate c{fit(problem, chosen), 0};
-    for (int it = 0; it < 2; ++it) {
-      chosen = inliers(problem, c.T);
-      if (chosen.size() < 3) break;
-      c.T = fit(problem, chosen);
-    }
-    c.score = double(inliers(problem, c.T).size());
-    if (c.score >= 3) candidates.push_back(c);
-  }
-  const auto better = [](const Candidate& a, const Candidate& b) { return a.score > b.score; };
-  std::stable_sort(candidates.begin(), candidates.end(), better);
-  Vec3 center = Vec3::Zero();
-  for (auto& p : source.position) center += p;
-  center /= double(source.size());
-  double radius = 0;
-  for (auto& p : source.position) radius += (p - center).squaredNorm();
-  radius = std::sqrt(radius / double(source.size()));
-  std::vector<Candidate> distinct;
-  for (auto& c : candidates) {
-    if (distinct.size() >= tune::REFINE) break;
-    bool old = false;
-    for (auto& d : distinct) old = old || alike(c.T, d.T, center, radius, 3 * tolerance);
-    if (!old) distinct.push_back(c);
-  }
-  if (tune::VERIFY > 0) {
-    const KdTree ts(source.position), tt(target.position);
-    for (auto& c : distinct) {
-      const double a = verify(source, target, tt, c.T, options.same_side), b = verify(target, source, ts, c.T.inverse(), options.same_side);
-      c.score = tune::VERIFY == 1 ? a + b : tune::VERIFY == 2 ? c.score * (a + b) : tune::VERIFY == 3 ? std::max(a, b) : std::sqrt(c.score) * (a + b);
-    }
-    std::stable_sort(distinct.begin(), distinct.end(), better);
-  }
-  std::vector<PoseHypothesis> result;
-  for (auto& c : distinct) {
-    if (result.size() >= std::size_t(options.max_hypotheses)) break;
-    result.push_back({c.T, c.score});
-  }
-  return result;
+  std::vector<PoseHypothesis> poses(seeds.size());
+  parallel::for_chunks(
+      context, seeds.size(),
+      [&](std::size_t begin, std::size_t end) {
+        for (std::size_t s = begin; s < end; ++s) {
+          poses[s] = grow(pairs, closest_friends(graph, seeds[s]), tolerance);
+        }
+      },
+      kChunk);
+  return distinct(std::move(poses), source.position, kAlike * tolerance, options.max_hypotheses);
 }
 
 }  // namespace shapelight

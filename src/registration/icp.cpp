@@ -64,15 +64,35 @@ PairSums<Equations> sum_pairs(const ClosestPoints& closest, const Equations& zer
       kChunk);
 }
 
+// All but the motion.
 template <class Equations>
 std::optional<IterationStep> make_step(const PairSums<Equations>& sums, double cost, std::size_t num_points) {
   if (sums.pairs < kMinPoints) return std::nullopt;
   const auto pairs = static_cast<double>(sums.pairs);
-  return IterationStep{.motion = sums.equations.solve(),
-                       .error = std::sqrt(std::max(cost, 0.0) / pairs),
+  return IterationStep{.error = std::sqrt(std::max(cost, 0.0) / pairs),
                        .inlier_ratio = pairs / static_cast<double>(num_points),
                        .rms = std::sqrt(sums.distance_sq / pairs)};
 }
+
+// Gauss-Newton steps that come to rest. At the end a few pairs may change back and forth for ever, and the pose with
+// them: steps below the spacing that turn back without becoming much smaller are shortened more and more.
+class StepControl {
+ public:
+  using Step = NormalEquations::Vector6;
+  explicit StepControl(double spacing) : spacing_(spacing) {}
+
+  Step shorten(const Step& step) {
+    const double length = step.norm();
+    if (step.dot(last_) < 0.0 && length < spacing_ && length > 0.5 * last_.norm()) share_ *= 0.5;
+    last_ = step;
+    return share_ * step;
+  }
+
+ private:
+  double spacing_;
+  double share_ = 1.0;
+  Step last_ = Step::Zero();
+};
 
 void check_normals(const RegistrationCloud& cloud, std::string_view which, IcpMetric metric) {
   if (cloud.normal.empty()) {
@@ -102,9 +122,12 @@ RegistrationResult register_by_icp(const RegistrationCloud& source, const Regist
                                   return true;
                                 });
     std::optional<IterationStep> step = make_step(sums, sums.distance_sq, source.size());
-    if (step) step->fixed_point = !changed;
+    if (!step) return step;
+    step->motion = sums.equations.solve();
+    step->fixed_point = !changed;
     return step;
   };
+  StepControl control(target.spacing);
   const auto surface_step = [&](const RigidTransform& T) {
     closest.update(T, context, max_distance);
     const NormalEquations zero(T.translation(), source.diagonal > 0.0 ? source.diagonal : 1.0);
@@ -122,7 +145,10 @@ RegistrationResult register_by_icp(const RegistrationCloud& source, const Regist
           equations.add_matrix(x, r, gicp_matrix(normal, T.linear() * source.normal[i]));
           return true;
         });
-    return make_step(sums, sums.equations.cost(), source.size());
+    std::optional<IterationStep> step = make_step(sums, sums.equations.cost(), source.size());
+    if (!step) return step;
+    step->motion = sums.equations.to_motion(control.shorten(sums.equations.solve()));
+    return step;
   };
 
   RegistrationResult result;

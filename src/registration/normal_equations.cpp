@@ -10,7 +10,7 @@ constexpr double kSmallestEigenvalue = 1e-9;
 
 }  // namespace
 
-RigidTransform NormalEquations::solve() const {
+NormalEquations::Vector6 NormalEquations::solve() const {
   const Eigen::Matrix<double, 6, 6> H = H_.selfadjointView<Eigen::Upper>();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> eigen(H);
   const Vector6& values = eigen.eigenvalues();  // ascending
@@ -20,6 +20,10 @@ RigidTransform NormalEquations::solve() const {
     const auto direction = eigen.eigenvectors().col(i);
     step -= direction * (direction.dot(b_) / values[i]);
   }
+  return step;
+}
+
+RigidTransform NormalEquations::to_motion(const Vector6& step) const {
   const Vec3 omega = inverse_length_ * step.head<3>();
   const double angle = omega.norm();
   RigidTransform motion = RigidTransform::Identity();

@@ -11,6 +11,8 @@ namespace shapelight {
 /// r = x - q. Rotations are counted in `length`, so that all six unknowns have the unit of a length.
 class NormalEquations {
  public:
+  using Vector6 = Eigen::Matrix<double, 6, 1>;
+
   NormalEquations(const Vec3& center, double length) : center_(center), inverse_length_(1.0 / length) {}
 
   /// Cost (r . n)^2 (Chen and Medioni 1992).
@@ -43,12 +45,13 @@ class NormalEquations {
   }
 
   [[nodiscard]] double cost() const { return cost_; }
-  /// The motion that minimises the linearised cost, as an exact rigid one. Directions that the pairs leave open are not
-  /// moved.
-  [[nodiscard]] RigidTransform solve() const;
+  /// The small motion (omega times length, v) that minimises the linearised cost. Directions that the pairs leave open
+  /// are not moved.
+  [[nodiscard]] Vector6 solve() const;
+  /// A small motion as an exact rigid one.
+  [[nodiscard]] RigidTransform to_motion(const Vector6& step) const;
 
  private:
-  using Vector6 = Eigen::Matrix<double, 6, 1>;
   Vec3 center_;
   double inverse_length_;
   Eigen::Matrix<double, 6, 6> H_ = Eigen::Matrix<double, 6, 6>::Zero();  // lower left block unused by add_matrix

@@ -37,7 +37,7 @@ BothWays pair_both_ways(const RegistrationCloud& source, const RegistrationCloud
   BothWays both{pair_surfaces(source, target, T, context), source.size()};
   const std::vector<SurfacePair> back = pair_surfaces(target, source, T.inverse(), context);
   both.pairs.insert(both.pairs.end(), back.begin(), back.end());
-  make_normals_agree(both.pairs, widest_gate(source, target));
+  forget_sides(both.pairs, source, target);
   return both;
 }
 
@@ -91,7 +91,8 @@ ReciprocalError reciprocal_error(const BothWays& both) {
 }
 
 // Second moments of the points' motion over the tangent planes: how a turn about `center`, its axis scaled by 1/reach,
-// and a slide change the heights of the pairs in the overlap.
+// and a slide change the heights of the pairs in the overlap. Each factor takes the normals of one scan, so that their
+// errors, which would make a sphere look rough enough to hold on to, average out.
 struct Information {
   Matrix6 moments = Matrix6::Zero();
   Vec3 center = Vec3::Zero();
@@ -102,24 +103,27 @@ struct Information {
 Information information(const RegistrationCloud& source, const RegistrationCloud& target, const RigidTransform& T,
                         std::span<const SurfacePair> forward, double gate) {
   Information info;
-  const auto for_each_pair = [&](auto&& use) {
-    for (std::size_t i = 0; i < forward.size(); ++i) {
-      const SurfacePair& pair = forward[i];
-      if (is_overlap(pair, gate)) use(T * source.position[i], target.normal[pair.nearest]);
-    }
-  };
-  for_each_pair([&](const Vec3& point, const Vec3&) { info.center += point, info.pairs += 1.0; });
-  if (info.pairs == 0.0) return info;
-  info.center /= info.pairs;
-  for_each_pair([&](const Vec3& point, const Vec3&) { info.reach += (point - info.center).squaredNorm(); });
-  info.reach = std::sqrt(info.reach / info.pairs);
+  std::vector<Index> overlap;
+  for (std::size_t i = 0; i < forward.size(); ++i) {
+    if (is_overlap(forward[i], gate)) overlap.push_back(static_cast<Index>(i));
+  }
+  if (overlap.empty()) return info;
+  info.pairs = static_cast<double>(overlap.size());
+  for (const Index i : overlap) info.center += T * source.position[i] / info.pairs;
+  for (const Index i : overlap) info.reach += (T * source.position[i] - info.center).squaredNorm() / info.pairs;
+  info.reach = std::sqrt(info.reach);
   if (info.reach == 0.0) return info;
-  for_each_pair([&](const Vec3& point, const Vec3& normal) {
-    Vector6 change;
-    change << (point - info.center).cross(normal) / info.reach, normal;
-    info.moments += change * change.transpose();
-  });
-  info.moments /= info.pairs;
+  for (const Index i : overlap) {
+    const Vec3 arm = (T * source.position[i] - info.center) / info.reach;
+    const Vec3& there = target.normal[forward[i].nearest];
+    Vec3 here = T.linear() * source.normal[i];
+    if (here.dot(there) < 0.0) here = -here;
+    Vector6 change_here, change_there;
+    change_here << arm.cross(here), here;
+    change_there << arm.cross(there), there;
+    info.moments +=
+        (change_here * change_there.transpose() + change_there * change_here.transpose()) / (2.0 * info.pairs);
+  }
   return info;
 }
 
@@ -153,10 +157,11 @@ void measure_conditioning(const Information& info, PoseAssessment& result) {
   Index strongest = 0;
   axis.cwiseAbs().maxCoeff(&strongest);
   if (axis[strongest] < 0.0) axis = -axis;
+  axis = (axis.array().abs() < 0.005).select(0.0, axis);  // no "-0.00"
   (slides ? result.weakest.translation : result.weakest.rotation) = axis;
   result.weakest.uncertainty = std::sqrt(variance / smallest);
-  result.weakest.name = fmt::format("{} ({:.2f}, {:.2f}, {:.2f})", slides ? "sliding along" : "turning about",
-                                    axis.x() + 0.0, axis.y() + 0.0, axis.z() + 0.0);
+  result.weakest.name = fmt::format("{} ({:.2f}, {:.2f}, {:.2f})", slides ? "sliding along" : "turning about", axis.x(),
+                                    axis.y(), axis.z());
 }
 
 }  // namespace

@@ -59,13 +59,9 @@ std::vector<SurfacePair> pair_surfaces(const RegistrationCloud& from, const Regi
   return pairs;
 }
 
-void make_normals_agree(std::span<SurfacePair> pairs, double reach) {
-  double sum = 0.0;
-  for (const SurfacePair& pair : pairs) {
-    if (pair.distance <= reach) sum += pair.cosine;
-  }
-  if (sum >= 0.0) return;
-  for (SurfacePair& pair : pairs) pair.cosine = -pair.cosine;
+void forget_sides(std::span<SurfacePair> pairs, const RegistrationCloud& a, const RegistrationCloud& b) {
+  if (a.viewpoint && b.viewpoint) return;
+  for (SurfacePair& pair : pairs) pair.cosine = std::abs(pair.cosine);
 }
 
 SurfaceGate find_gate(std::span<const SurfacePair> pairs, double widest, double narrowest) {

@@ -24,9 +24,8 @@ struct SurfacePair {
 [[nodiscard]] std::vector<SurfacePair> pair_surfaces(const RegistrationCloud& from, const RegistrationCloud& to,
                                                      const RigidTransform& T_to_from, const RunContext& context);
 
-/// Turns the normals of one side over when most close pairs face opposite ways: without a known sensor the normals of a
-/// scan may point to the wrong side as a whole.
-void make_normals_agree(std::span<SurfacePair> pairs, double reach);
+/// Without both sensors' places the side that a normal points to says nothing: cosines become absolute values.
+void forget_sides(std::span<SurfacePair> pairs, const RegistrationCloud& a, const RegistrationCloud& b);
 
 /// Do these two lie on the same side of a surface, the one within `gate` of the other?
 [[nodiscard]] inline bool is_overlap(const SurfacePair& pair, double gate) {

@@ -11,6 +11,7 @@ namespace shapelight {
 namespace {
 
 constexpr int kBitsPerAxis = 21;
+constexpr double kAgreement = 0.3;  // length of the mean normal of a cell, below which it says nothing
 
 /// Numbers the cubic cells of a box. The middle of the box is the middle of a cell, so that a flat sheet across it does
 /// not lie on the border of its cells.
@@ -40,12 +41,12 @@ ThinnedScan thin_scan(const RegistrationCloud& cloud, double cell) {
   std::vector<std::pair<std::uint64_t, Index>> order;
   order.reserve(cloud.size());
   for (Index i = 0; i < cloud.size(); ++i) {
-    if (!cloud.normal[i].isZero()) order.emplace_back(number.of(cloud.position[i]), i);
+    if (cloud.normal[i].squaredNorm() > 0.0) order.emplace_back(number.of(cloud.position[i]), i);
   }
   std::sort(order.begin(), order.end());
 
   ThinnedScan scan;
-  scan.point_cell.assign(cloud.size(), kNoIndex);
+  scan.index_of_point.assign(cloud.size(), kNoIndex);
   for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {
     Vec3 offset = Vec3::Zero();
     Vec3 normal = Vec3::Zero();
@@ -55,9 +56,9 @@ ThinnedScan thin_scan(const RegistrationCloud& cloud, double cell) {
       normal += cloud.normal[order[end].second];
     }
     // Both sides of a thin sheet in one cell: no direction to speak of.
-    if (normal.norm() < 0.3 * static_cast<double>(end - begin)) continue;
+    if (normal.norm() < kAgreement * static_cast<double>(end - begin)) continue;
     for (std::size_t i = begin; i < end; ++i) {
-      scan.point_cell[order[i].second] = static_cast<Index>(scan.position.size());
+      scan.index_of_point[order[i].second] = static_cast<Index>(scan.position.size());
     }
     scan.position.push_back(first + offset / static_cast<double>(end - begin));
     scan.normal.push_back(normal.normalized());

@@ -102,7 +102,7 @@ TEST(PoseAssessment, CovarianceIsThatOfAMotionAboutTheOrigin) {
   EXPECT_NEAR(far.weakest.uncertainty, near.weakest.uncertainty, 1e-6 * near.weakest.uncertainty);
 }
 
-TEST(PoseAssessment, NormalsOfAScanMayAllPointToTheOtherSide) {
+TEST(PoseAssessment, NormalsMayPointToEitherSideWithoutASensor) {
   const testing::Shape shape = testing::saddle(40, 0.05);
   std::vector<Vec3> turned = shape.normals;
   for (Vec3& normal : turned) normal = -normal;

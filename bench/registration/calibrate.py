@@ -1,0 +1,102 @@
+#!/usr/bin/env python3
+"""Fits the confidence of a pose to registrations whose truth is known, and tests it on others.
+
+    calibrate.py TRAIN.csv... --test TEST.csv...      (from confidence_data)
+
+A pose is right when it turns less than 3 degrees and shifts less than 2 % of the diagonal from the truth. Prints the
+coefficients for src/registration/pose_confidence.cpp (they are not written there by themselves), a table of predicted
+against met shares on the test runs, and how many wrong poses would have been reported as good."""
+
+import argparse
+import csv
+import math
+import sys
+
+import numpy
+
+FEATURES = ("overlap", "contrast", "residual", "normal_agreement", "free_space", "conditioning", "rival")
+
+
+def is_right(row):
+    return 0.0 <= float(row["rotation_deg"]) < 3.0 and float(row["shift"]) < 0.02
+
+
+def features(row):
+    """Must be those of pose_confidence.cpp."""
+    value = {name: float(row[name]) for name in row if name not in ("kind", "source", "target")}
+    rival = value["rival_fit"] / max(value["fit"], 1e-9)
+    return [
+        math.log(max(value["overlap"], 1e-3)),
+        math.log(max(value["contrast"], 0.1)),
+        math.log(max(value["residual"] / max(value["gate"], 1e-12), 1e-3)),
+        value["normal_agreement"],
+        min(value["in_free_space"], 0.3),
+        math.log(min(max(value["conditioning"], 1e-7), 1e-2)),
+        max(rival - 0.7, 0.0),
+    ]
+
+
+def read(paths):
+    rows = []
+    for path in paths:
+        with open(path) as file:
+            rows += list(csv.DictReader(file))
+    return rows
+
+
+def design(rows):
+    return numpy.array([[1.0] + features(row) for row in rows]), numpy.array([float(is_right(row)) for row in rows])
+
+
+def fit(x, y, ridge=1e-2, steps=100):
+    """Logistic regression by Newton's method; the ridge holds all but the constant."""
+    weight = numpy.zeros(x.shape[1])
+    penalty = ridge * numpy.eye(x.shape[1])
+    penalty[0, 0] = 0.0
+    for _ in range(steps):
+        p = 1.0 / (1.0 + numpy.exp(-numpy.clip(x @ weight, -40, 40)))
+        gradient = x.T @ (y - p) - penalty @ weight
+        hessian = (x * (p * (1.0 - p))[:, None]).T @ x + penalty
+        weight += numpy.linalg.solve(hessian, gradient)
+    return weight
+
+
+def report(rows, confidence, right):
+    print("| confidence | runs | right |\n| --- | ---: | ---: |")
+    for low, high in ((0.0, 0.1), (0.1, 0.3), (0.3, 0.5), (0.5, 0.7), (0.7, 0.9), (0.9, 0.99), (0.99, 1.01)):
+        inside = (confidence >= low) & (confidence < high)
+        share = f"{100 * right[inside].mean():.1f} %" if inside.any() else "-"
+        print(f"| {low:g} to {min(high, 1):g} | {inside.sum()} | {share} |")
+    print("\n| kind | runs | right poses | reported | wrong among the reported |\n| --- | ---: | ---: | ---: | ---: |")
+    for kind in sorted({row["kind"] for row in rows}):
+        of_kind = numpy.array([row["kind"] == kind for row in rows])
+        told = of_kind & (confidence >= 0.5)
+        print(f"| {kind} | {of_kind.sum()} | {int(right[of_kind].sum())} | {told.sum()} | {int((1 - right[told]).sum())} |")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("train", nargs="+")
+    parser.add_argument("--test", nargs="+", default=[])
+    parser.add_argument("--as-reported", action="store_true", help="judge the confidence in the files, fit nothing")
+    arguments = parser.parse_args()
+    rows = read(arguments.train)
+    x, y = design(rows)
+    if not arguments.as_reported:
+        weight = fit(x, y)
+        print(f"constant {weight[0]:.3f}")
+        for name, value in zip(FEATURES, weight[1:]):
+            print(f"{name} {value:.3f}")
+        if arguments.test:
+            rows = read(arguments.test)
+            x, y = design(rows)
+        confidence = 1.0 / (1.0 + numpy.exp(-(x @ weight)))
+    else:
+        confidence = numpy.array([float(row["confidence"]) for row in rows])
+    print()
+    report(rows, confidence, y)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
