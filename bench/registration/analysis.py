@@ -9,6 +9,7 @@ import numpy as np
 SPS = "stratified"  # the paper's rival
 SBS = "shape-nb"    # ours as registration uses it
 PAPER_SBS = "paper"
+FEWEST_PAIRS = 5    # that a statistic over pairs asks for
 
 
 class Runs:
@@ -41,10 +42,10 @@ class Runs:
 
 def ratio(one, other, repeats=2000):
     """Geometric mean over pairs of one[pair] / other[pair], and its 95 % interval, bootstrapped over pairs.
-    {"ratio", "low", "high", "pairs"}, or None when fewer than three pairs have both."""
+    {"ratio", "low", "high", "pairs"}, or None when fewer than five pairs have both."""
     both = sorted(set(one) & set(other))
     logs = np.array([math.log(max(one[p], 1e-9) / max(other[p], 1e-9)) for p in both])
-    if len(logs) < 3:
+    if len(logs) < FEWEST_PAIRS:
         return None
     draws = np.random.default_rng(2013).integers(0, len(logs), (repeats, len(logs)))
     low, high = np.exp(np.percentile(logs[draws].mean(axis=1), [2.5, 97.5]))
@@ -218,6 +219,18 @@ def claims(runs, samplings):
                 "holds" if np.mean(one > other) > 0.8 else "does not hold" if np.mean(one > other) < 0.5
                 else "undecided")
     return found
+
+
+def border_table(runs, methods, percent):
+    """How much of the gain is the border that is left out, and how much the choice of points."""
+    steps = [("border left out: `stratified-nb` over `stratified`", "stratified-nb", SPS),
+             ("then points by shape: `shape-nb` over `stratified-nb`", SBS, "stratified-nb"),
+             ("both: `shape-nb` over `stratified`", SBS, SPS),
+             ("points by shape, border kept: `shape` over `stratified`", "shape", SPS)]
+    return markdown_table(["rotation error, ratio", *methods],
+                          [[name, *(say_ratio(ratio(runs.per_pair(m, one, percent, "rotation_deg"),
+                                                    runs.per_pair(m, other, percent, "rotation_deg")))
+                                    for m in methods)] for name, one, other in steps])
 
 
 def targets(runs, samplings):

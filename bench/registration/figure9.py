@@ -1,6 +1,6 @@
 """Figure 9 of the paper, and more: registration on samples, against the share of points kept.
 
-  python3 bench/registration/figure9.py --shapelight-build build/release [--pairs DIR] [--meshes FILE...]
+  python3 bench/registration/figure9.py --shapelight-build build/bench [--pairs DIR] [--meshes FILE...]
 
 Runs registration_experiment on the shipped scans and on virtual scans of the shipped meshes; --pairs DIR adds the
 Stanford pairs (stanford_bunny/, stanford_dragon/), --meshes one virtual pair each. Then the peers that are installed.
@@ -96,6 +96,7 @@ def document(runs, samplings, peers, images, arguments):
           + analysis.accuracy_table(runs, methods, plan.SAMPLERS, p)
           + f"\nRotation error over that with `{analysis.SPS}` samples, failures included:\n\n"
           + analysis.ratio_table(runs, methods, plan.SAMPLERS, p) for p in (10.0, 5.0)),
+        "## The border or the shape? (P = 5 %)\n\n" + analysis.border_table(runs, methods, 5.0),
         "## Do two samplings keep the same places? (P = 5 %)\n\n" + analysis.sampling_table(samplings, 5.0),
         "## Against P\n\nRotation error [degrees] / e_mu on the full scans [point spacings] / CPU of the registration "
         "[ms]: medians over the pairs that were run at every P.\n\n"
@@ -135,7 +136,7 @@ def write_csv(path, rows):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--shapelight-build", type=Path, default=ROOT / "build/release")
+    parser.add_argument("--shapelight-build", type=Path, default=ROOT / "build/bench")
     parser.add_argument("--data", type=Path, default=ROOT / "data", help="folder with meshes/ and scans/")
     parser.add_argument("--pairs", type=Path, help="folder with stanford_bunny/ and stanford_dragon/")
     parser.add_argument("--meshes", type=Path, nargs="*", default=[], help="more meshes to scan")
@@ -147,7 +148,7 @@ def main():
     arguments = parser.parse_args()
     binary = arguments.shapelight_build / "bin/registration_experiment"
     if not binary.exists():
-        sys.exit(f"{binary}: not there; configure with -DSHAPELIGHT_BUILD_BENCH=ON and build registration_experiment")
+        sys.exit(f"{binary}: not there; cmake --preset bench && cmake --build --preset bench")
 
     exported = arguments.output / "exported"
     all_jobs = plan.jobs(plan.pairs(arguments.data, arguments.pairs, arguments.meshes), arguments)
