@@ -36,7 +36,7 @@ struct RegisterOptions {
   double ratio = 0.0;         ///< [1] share of each scan's points that is registered; 0: 2000 to 10000 points
   bool skip_boundary = true;  ///< choose no points on the border of a scan: they have no counterpart
   bool coarse = true;         ///< without a starting pose look for one; else start where the files say
-  bool polish = true;         ///< at the end, a few steps of the sampled source against the full target's surface
+  bool polish = true;  ///< at the end, a few steps against the full target's surface: of the samples, then of more
   double max_distance = 0.0;  ///< [input length unit] of icp, plane and gicp; 0: a tenth of the target's diagonal
   std::uint64_t seed = 0;     ///< of samplers that draw at random
 
