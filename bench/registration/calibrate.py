@@ -14,7 +14,8 @@ import sys
 
 import numpy
 
-FEATURES = ("overlap", "contrast", "residual", "normal_agreement", "free_space", "conditioning", "rival")
+FEATURES = ("overlap", "contrast", "residual", "normal_agreement", "free_space", "conditioning")
+RIVAL_POWER = 6  # poses that fit alike share the probability: 1 / (1 + (fit of the rival / fit)^6)
 
 
 def is_right(row):
@@ -24,7 +25,6 @@ def is_right(row):
 def features(row):
     """Must be those of pose_confidence.cpp."""
     value = {name: float(row[name]) for name in row if name not in ("kind", "source", "target")}
-    rival = value["rival_fit"] / max(value["fit"], 1e-9)
     return [
         math.log(max(value["overlap"], 1e-3)),
         math.log(max(value["contrast"], 0.1)),
@@ -32,8 +32,11 @@ def features(row):
         value["normal_agreement"],
         min(value["in_free_space"], 0.3),
         math.log(min(max(value["conditioning"], 1e-7), 1e-2)),
-        max(rival - 0.7, 0.0),
     ]
+
+
+def rival_share(row):
+    return float(row["rival_fit"]) / max(float(row["fit"]), 1e-9)
 
 
 def read(paths):
@@ -83,14 +86,17 @@ def main():
     rows = read(arguments.train)
     x, y = design(rows)
     if not arguments.as_reported:
-        weight = fit(x, y)
+        alone = numpy.array([rival_share(row) < 0.7 for row in rows])
+        weight = fit(x[alone], y[alone])
+        usual = x[alone & (y > 0)].mean(axis=0)
         print(f"constant {weight[0]:.3f}")
-        for name, value in zip(FEATURES, weight[1:]):
-            print(f"{name} {value:.3f}")
+        for name, value, of_right in zip(FEATURES, weight[1:], usual[1:]):
+            print(f"{name} {value:.3f}, of right poses {of_right:.3f}")
         if arguments.test:
             rows = read(arguments.test)
             x, y = design(rows)
-        confidence = 1.0 / (1.0 + numpy.exp(-(x @ weight)))
+        share = numpy.array([rival_share(row) for row in rows])
+        confidence = 1.0 / (1.0 + numpy.exp(-(x @ weight))) / (1.0 + share**RIVAL_POWER)
     else:
         confidence = numpy.array([float(row["confidence"]) for row in rows])
     print()

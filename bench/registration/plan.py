@@ -27,7 +27,8 @@ REAL = {"bunny 45": ("stanford_bunny/bun045.ply", "stanford_bunny/bun000.ply",
                       "stanford_dragon/T_dragonStandRight_48_to_0.txt")}
 SHIPPED_REAL = {"dragon 24": ("dragonStandRight_24.ply", "dragonStandRight_0.ply",
                               "T_dragonStandRight_24_to_0.txt")}
-HIGH_PAIRS = 3  # pairs that are also run at 25, 50 and 95 %, where a run takes seconds
+HIGH = ["bunny 45", "dragon 24", "armadillo-70", "bunny-75", "armadillo-90", "fandisk-85", "bunny-95"]
+HIGH_PAIRS = 6  # of these are also run at 25, 50 and 95 %, where a run takes seconds
 
 
 def pairs(data, real, meshes):
@@ -45,14 +46,11 @@ def pairs(data, real, meshes):
 
 def jobs(all_pairs, arguments):
     """The command lines, the longest first: [(name of the cell, arguments)]."""
-    low = ["--percent", "10,5", "--samplers", ",".join(SAMPLERS), "--starts", str(arguments.starts)]
-    high = ["--percent", "95,50,25", "--samplers", ",".join(FEW_SAMPLERS), "--starts", str(arguments.starts),
-            "--polished", "1"]
-    if arguments.quick:
-        low[1], high[1] = "5", "25"
-    chosen_high = [name for name in ("bunny 45", "dragon 24", "armadillo-70", "bunny-75") if name in all_pairs]
-    result = [(f"{name} high", words + high) for name, words in all_pairs.items()
-              if name in chosen_high[:HIGH_PAIRS]]
+    common = ["--pixels", "400", "--polished", "1", "--starts", str(arguments.starts)]
+    low = [*common, "--samplers", ",".join(SAMPLERS), "--percent", "5" if arguments.quick else "10,5"]
+    high = [*common, "--samplers", ",".join(FEW_SAMPLERS), "--percent", "25" if arguments.quick else "95,50,25"]
+    chosen = [name for name in HIGH if name in all_pairs][:HIGH_PAIRS]
+    result = [(f"{name} high", all_pairs[name] + high) for name in chosen]
     return result + [(f"{name} low", words + low) for name, words in all_pairs.items()]
 
 

@@ -118,7 +118,9 @@ RigidTransform to_origins(const RigidTransform& T_target_source, const PreparedS
 
 RigidTransform to_input(const RigidTransform& local, const PreparedScan& source, const PreparedScan& target) {
   RigidTransform T_target_source = local;
-  T_target_source.translation() = target.origin + local.translation() - local.linear() * source.origin;
+  // Steps that were multiplied up are a rotation to twelve digits only.
+  T_target_source.linear() = Eigen::Quaterniond(local.linear()).normalized().toRotationMatrix();
+  T_target_source.translation() = target.origin + local.translation() - T_target_source.linear() * source.origin;
   return T_target_source;
 }
 
@@ -142,10 +144,11 @@ RegisterResult register_scans(const PreparedScan& source, const PreparedScan& ta
   RegisterResult result;
   Attempt& best = attempts.front();
   result.T_target_source = to_input(best.T_target_source, source, target);
-  result.assessment =
-      assess_pose(source.full, target.full, best.T_target_source, context.phase(0.8, 1.0, "assess the pose"));
   result.fit = best.fit;
   result.rival_fit = rival_fit(attempts, source.full.diagonal);
+  result.assessment =
+      assess_pose(source.full, target.full, best.T_target_source, best.fit > 0.0 ? result.rival_fit / best.fit : 0.0,
+                  context.phase(0.8, 1.0, "assess the pose"));
   result.registration = std::move(best.registration);
   result.source_samples = source.samples.size();
   result.target_samples = target.samples.size();

@@ -124,7 +124,7 @@ TEST(ScanCommand, BadUsageIsTwo) {
   const Workplace work;
   const std::vector<std::pair<Arguments, const char*>> cases = {
       {{"--views", "0"}, "--views: 0"},       {{"--elevation", "91"}, "--elevation: 91"},
-      {{"--fov", "180"}, "--fov: 180"},       {{"--width", "0"}, "--width: 0"},
+      {{"--fov", "180"}, "--fov: 180"},       {{"--max-incidence", "2"}, "--max-incidence: 2"},
       {{"--noise", "-1"}, "--noise: -1"},     {{"--noise", "-1%"}, "--noise: '-1%'"},
       {{"--noise", "1mm"}, "--noise: '1mm'"}, {{"--dropout", "1.5"}, "--dropout: 1.5"}};
   for (const auto& [more, message] : cases) {

@@ -77,7 +77,6 @@ struct RegisterResult {
   std::size_t hypotheses = 0;  ///< starting poses tried; 0 when one was given
   double fit = 0.0;            ///< [1] how well the samples of the scan that fits better lie on the other one
   double rival_fit = 0.0;      ///< [1] the same of the best pose that is another one, of those that were tried
-  std::string doubt;           ///< what speaks most against the pose: "the scans overlap by 4 % only", ...
   std::vector<std::string> warnings;
 };
 
