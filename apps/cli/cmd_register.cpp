@@ -58,6 +58,7 @@ nlohmann::ordered_json result_json(const RegisterResult& result) {
           {"fit", result.fit},
           {"rival_fit", result.rival_fit},
           {"confidence", pose.confidence},
+          {"doubt", pose.doubt},
           {"source_samples", result.source_samples},
           {"target_samples", result.target_samples},
           {"hypotheses", result.hypotheses}};
@@ -119,7 +120,8 @@ int run_register(const RegisterArguments& arguments, const DescribedFlags<Regist
   run.finish();
   if (!is_trusted) {
     throw PostconditionFailed(fmt::format("confidence {:.2f} is below --min-confidence {:g}, nothing was written: {}",
-                                          result.assessment.confidence, arguments.min_confidence, result.doubt));
+                                          result.assessment.confidence, arguments.min_confidence,
+                                          result.assessment.doubt));
   }
   return 0;
 }

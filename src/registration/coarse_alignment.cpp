@@ -15,7 +15,7 @@ namespace {
 constexpr double kTolerance = 1.5;    // [spacings] two thinned scans put a point at places that differ by about one
 constexpr double kMinCosine = 0.7;    // of normals that agree
 constexpr double kNormalWeight = 4;   // [tolerances squared] of a pair of normals against a pair of places
-constexpr std::size_t kSeeds = 200;   // matches that groups grow from
+constexpr std::size_t kSeeds = 100;   // matches that groups grow from
 constexpr std::size_t kFriends = 20;  // of a seed, that the first pose is fitted to
 constexpr int kRefits = 2;
 constexpr std::size_t kMinSupport = 4;  // three pairs fit some pose always

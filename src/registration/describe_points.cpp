@@ -17,7 +17,7 @@ constexpr double kPoints = 4000;         // of a thinned scan: enough for detail
 constexpr double kSpacings = 2.0;        // of the scan at least: several points share a cell
 constexpr std::size_t kProbe = 40000;    // points that say how many cells are occupied
 constexpr double kRadius = 5.0;          // [spacings] of a neighbourhood: about 80 points
-constexpr std::size_t kKeypoints = 800;  // more find no more poses, but cost
+constexpr std::size_t kKeypoints = 600;  // more find no more poses, but cost
 constexpr double kFinest = 1e-6;         // [diagonals] cells are numbered with 21 bits per axis
 constexpr std::size_t kChunk = 256;
 

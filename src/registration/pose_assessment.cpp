@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/parallel.hpp"
+#include "registration/pose_confidence.hpp"
 #include "registration/sight.hpp"
 #include "registration/surface_pairs.hpp"
 #include "shapelight/core/error.hpp"
@@ -167,7 +168,7 @@ void measure_conditioning(const Information& info, PoseAssessment& result) {
 }  // namespace
 
 PoseAssessment assess_pose(const RegistrationCloud& source, const RegistrationCloud& target,
-                           const RigidTransform& T_target_source, const RunContext& context) {
+                           const RigidTransform& T_target_source, double rival_share, const RunContext& context) {
   check(source, "source");
   check(target, "target");
   const BothWays both = pair_both_ways(source, target, T_target_source, context);
@@ -181,6 +182,9 @@ PoseAssessment assess_pose(const RegistrationCloud& source, const RegistrationCl
   measure_overlap(both, result);
   result.in_free_space = share_in_free_space(source, target, T_target_source, gate.width, context);
   measure_conditioning(information(source, target, T_target_source, both.forward(), gate.width), result);
+  const Judgement judgement = judge_pose(result, rival_share);
+  result.confidence = judgement.confidence;
+  result.doubt = judgement.doubt;
   return result;
 }
 

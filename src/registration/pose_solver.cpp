@@ -69,11 +69,13 @@ std::vector<RigidTransform> moved(const std::vector<RigidTransform>& poses, cons
   return result;
 }
 
-// Position of each scan's unknowns; fixed ones and those without a pair have none.
+// Position of each scan's unknowns; fixed ones and those that no pair holds have none.
 std::vector<std::ptrdiff_t> number_blocks(std::size_t num_scans, const std::vector<bool>& is_fixed,
                                           std::span<const PairTerm> terms) {
   std::vector<bool> is_free(num_scans, false);
-  for (const PairTerm& term : terms) is_free[term.target] = is_free[term.source] = true;
+  for (const PairTerm& term : terms) {
+    if (!term.hessian.isZero(0.0)) is_free[term.target] = is_free[term.source] = true;
+  }
   std::vector<std::ptrdiff_t> block(num_scans, kFixed);
   std::ptrdiff_t next = 0;
   for (std::size_t i = 0; i < num_scans; ++i) {

@@ -13,7 +13,7 @@ namespace shapelight {
 namespace {
 
 constexpr std::size_t kMinPoints = 10;
-constexpr double kGate = 3.7;          // [sigma] farther candidates weigh less than a thousandth of the closest
+constexpr double kGate = 3.67;         // [sigma] farther candidates weigh less than a thousandth of the closest
 constexpr double kLargestSigma = 0.2;  // [target diagonals]
 constexpr double kMinWeight = 3.0;     // [pairs] less does not determine a motion
 
@@ -58,8 +58,9 @@ RegistrationResult register_by_soft_icp(const RegistrationCloud& source, const R
   ClosestPoints backward(target.position, source, k);
   SoftMatches soft(source.size(), target.size());
   forward.update(T_target_source, context);
-  if (!(final_sigma > 0.0)) final_sigma = std::max(first_sigma(forward), 1.0);  // all points of a cloud are one place
-  double sigma = std::max(std::min(first_sigma(forward), kLargestSigma * target.diagonal), final_sigma);
+  const double first = first_sigma(forward);
+  if (!(final_sigma > 0.0)) final_sigma = first > 0.0 ? first : 1.0;  // each cloud is a single place
+  double sigma = std::max(std::min(first, kLargestSigma * target.diagonal), final_sigma);
 
   const auto step = [&](const RigidTransform& T) {
     forward.update(T, context, kGate * sigma);
@@ -71,17 +72,19 @@ RegistrationResult register_by_soft_icp(const RegistrationCloud& source, const R
 
   RegistrationResult result;
   result.T_target_source = T_target_source;
-  const IterationLimits one_step{.iterations = 1};
   const RunContext annealing = context.phase(0.0, 0.5, "softicp, annealing");
-  const double steps = std::ceil(std::log(final_sigma / sigma) / std::log(options.rate));
-  for (double done = 0.0; sigma > final_sigma; ++done) {
-    iterate(result, one_step, {context.max_threads, context.stop, {}}, step);
-    if (result.stop == StopReason::TooFewPairs) return result;
-    annealing.report(std::min(1.0, done / std::max(1.0, steps)));
-    sigma = std::max(final_sigma, options.rate * sigma);
+  const RunContext silent{context.max_threads, context.stop, {}};
+  const double widest = std::log(sigma / final_sigma);
+  bool enough = true;
+  for (; enough && sigma > final_sigma; sigma = std::max(final_sigma, options.rate * sigma)) {
+    annealing.report(1.0 - std::log(sigma / final_sigma) / widest);
+    iterate(result, {.iterations = 1}, silent, step);
+    enough = result.stop != StopReason::TooFewPairs;
   }
-  iterate(result, {options.max_iterations, options.tolerance, options.tolerance * target.diagonal},
-          context.phase(0.5, 1.0, "softicp"), step);
+  if (enough) {
+    iterate(result, {options.max_iterations, options.tolerance, options.tolerance * target.diagonal},
+            context.phase(0.5, 1.0, "softicp"), step);
+  }
   context.report(1.0);
   return result;
 }

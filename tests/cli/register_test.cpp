@@ -33,7 +33,7 @@ TEST(RegisterCommand, WritesTheMovedSourceTheTransformAndTheReport) {
   }
   for (int row = 0; row < 4; ++row) {
     for (int column = 0; column < 4; ++column) {
-      EXPECT_DOUBLE_EQ(result["T_target_source"][row][column].get<double>(), T.matrix()(row, column));
+      EXPECT_NEAR(result["T_target_source"][row][column].get<double>(), T.matrix()(row, column), 1e-15);
     }
   }
   const Geometry moved = read_geometry(work.path("moved.ply"));

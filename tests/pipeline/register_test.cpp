@@ -104,7 +104,7 @@ TEST(Register, DoubtsWhatCannotBeKnown) {
   const auto expect_doubt = [](const Geometry& source, const Geometry& target, const char* what) {
     const RegisterResult result = register_scans(source, target);
     EXPECT_LT(result.assessment.confidence, 0.5) << what;
-    EXPECT_FALSE(result.doubt.empty()) << what;
+    EXPECT_FALSE(result.assessment.doubt.empty()) << what;
   };
   const Geometry sphere = geometry_of(testing::sphere(5, 1.0));
   expect_doubt(sphere, sphere, "sphere");

@@ -44,6 +44,22 @@ TEST(KdTree, NearestAgreesWithBruteForceTiesIncluded) {
   }
 }
 
+TEST(KdTree, NearestWithinALimitAreTheFirstOfAll) {
+  const std::vector<Vec3> points = points_with_ties(700);
+  const KdTree tree(points);
+  std::vector<Neighbor> found;
+  for (const Vec3& query : points_with_ties(60)) {
+    const std::vector<Neighbor> expected = brute_force(points, query);
+    for (const double limit_sq : {0.0, expected[3].distance_sq, 1.0}) {  // a point at the limit counts
+      const auto count = static_cast<std::size_t>(std::count_if(
+          expected.begin(), expected.end(), [&](const Neighbor& n) { return n.distance_sq <= limit_sq; }));
+      tree.nearest(query, 5, found, limit_sq);
+      ASSERT_EQ(found.size(), std::min<std::size_t>(5, count));
+      for (std::size_t i = 0; i < found.size(); ++i) EXPECT_EQ(found[i].index, expected[i].index);
+    }
+  }
+}
+
 TEST(KdTree, WithinAgreesWithBruteForce) {
   const std::vector<Vec3> points = points_with_ties(500);
   const KdTree tree(points);

@@ -36,7 +36,7 @@ struct RegisterOptions {
   double ratio = 0.0;         ///< [1] share of each scan's points that is registered; 0: 2000 to 10000 points
   bool skip_boundary = true;  ///< choose no points on the border of a scan: they have no counterpart
   bool coarse = true;         ///< without a starting pose look for one; else start where the files say
-  bool polish = true;         ///< at the end, a few steps of the sampled source against the full target's surface
+  bool polish = true;  ///< at the end, a few steps against the full target's surface: of the samples, then of more
   double max_distance = 0.0;  ///< [input length unit] of icp, plane and gicp; 0: a tenth of the target's diagonal
   std::uint64_t seed = 0;     ///< of samplers that draw at random
 
@@ -77,7 +77,6 @@ struct RegisterResult {
   std::size_t hypotheses = 0;  ///< starting poses tried; 0 when one was given
   double fit = 0.0;            ///< [1] how well the samples of the scan that fits better lie on the other one
   double rival_fit = 0.0;      ///< [1] the same of the best pose that is another one, of those that were tried
-  std::string doubt;           ///< what speaks most against the pose: "the scans overlap by 4 % only", ...
   std::vector<std::string> warnings;
 };
 

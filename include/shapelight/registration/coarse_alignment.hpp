@@ -31,7 +31,7 @@ struct DescribedPoints {
 
 /// Thins a scan to `spacing` (the mean of the points, and of the normals, in every cubic cell) and describes every
 /// point by its fast point feature histogram (Rusu, Blodow and Beetz 2009) over the points within five spacings.
-/// `keypoints` index the cloud, best first; those that fall into one cell are one, and the first 800 are kept. Choose
+/// `keypoints` index the cloud, best first; those that fall into one cell are one, and the first 600 are kept. Choose
 /// points on detail, off the border: on planes everything looks alike. Normals need consistent signs within a
 /// neighbourhood only. Points without a normal are left out.
 /// Throws InvalidInput (no normals, spacing not positive or below a millionth of the diagonal, keypoint out of range),
@@ -63,7 +63,7 @@ struct PoseHypothesis {
 /// those with most votes, with its closest friends, gives a pose, which is fitted again to all matches that agree with
 /// it. Most support first, no two alike; empty when nothing agrees. A pose is good to about one spacing and a degree or
 /// two: the start of a registration, not its result. Rigid, at scale one.
-/// Throws InvalidInput (options), Cancelled. Same result for any RunContext. Cost: at most 2500^2 pairs of matches,
+/// Throws InvalidInput (options), Cancelled. Same result for any RunContext. Cost: at most 2400^2 pairs of matches,
 /// about 0.1 s and 1 MB.
 [[nodiscard]] std::vector<PoseHypothesis> align_coarsely(const DescribedPoints& source, const DescribedPoints& target,
                                                          const CoarseAlignmentOptions& options = {},

@@ -14,9 +14,9 @@ namespace shapelight {
 /// Parameters of refine_jointly().
 struct JointRefinementOptions {
   double max_distance = 3.0;  ///< [target spacings] across the surface: points farther apart do not correspond
-  double max_slide = 1.5;     ///< [target spacings] along the surface: beyond, the target ends or has a hole
+  double max_slide = 2.0;     ///< [target spacings] along the surface: beyond, the target ends or has a hole
   int max_iterations = 30;    ///< [iterations]
-  double tolerance = 1e-4;    ///< [target spacings] stop when no scan moves more
+  double tolerance = 0.01;    ///< [target spacings] stop when no scan moves more
 
   template <class Self, class Visitor>
   static void describe(Self& o, Visitor&& visit) {

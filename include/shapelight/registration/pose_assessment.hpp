@@ -44,13 +44,18 @@ struct PoseAssessment {
   Matrix6 covariance = Matrix6::Zero();  ///< of (turn [rad] about, slide [length] of) the target's origin
   WeakestDirection weakest;
   double confidence = 0.0;  ///< [1] calibrated share of right poses among poses that look like this one
+  std::string doubt;        ///< what speaks most against it: "the scans overlap by 4 % only", ...; may be empty
 };
 
 /// Assesses a pose on the full scans: how far they overlap, how well they fit there, and whether that fit determines
 /// the pose. The gate starts at 3 % of the smaller diagonal and shrinks to six residuals as long as the residuals
 /// shrink with it: on a right pose they do, to the noise and the point spacing; on a wrong one they fill any gate
-/// evenly. Pre: both clouds have normals and 3 points or more (InvalidInput). Cost: two tree searches per point.
+/// evenly. `rival_share` [1]: how well the best other pose fits, of what this one does; 0 when no other was tried. The
+/// confidence was calibrated on registrations of known truth (docs/register.md), right meaning within 3 degrees and 2 %
+/// of the diagonal. Pre: both clouds have normals and 3 points or more (InvalidInput). Cost: two tree searches per
+/// point.
 [[nodiscard]] PoseAssessment assess_pose(const RegistrationCloud& source, const RegistrationCloud& target,
-                                         const RigidTransform& T_target_source, const RunContext& context = {});
+                                         const RigidTransform& T_target_source, double rival_share = 0.0,
+                                         const RunContext& context = {});
 
 }  // namespace shapelight
