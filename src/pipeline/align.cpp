@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -42,7 +43,9 @@ Matrix6 realistic(const Matrix6& covariance, const RegistrationCloud& target, co
   variance << Vec3::Constant(turn * turn), Vec3::Constant(slide * slide);
   Matrix6 sum = 0.5 * (covariance + covariance.transpose());
   sum.diagonal() += variance;
-  return sum;
+  if (sum.allFinite() && sum.llt().info() == Eigen::Success) return sum;
+  variance << Vec3::Ones(), Vec3::Constant(target.diagonal * target.diagonal);  // nothing is known
+  return variance.asDiagonal();
 }
 
 class Alignment {
@@ -63,8 +66,10 @@ class Alignment {
     close_loops(context_.phase(0.75, 0.9, "close loops"));
     poses_ = graph_.T_world_scan;
     const std::vector<ScanIds> overlaps = overlapping_pairs();
-    if (options_.refine) refine(overlaps, context_.phase(0.9, 1.0, "refine"));
-    return result(overlaps);
+    if (options_.refine) refine(overlaps, context_.phase(0.9, 0.98, "refine"));
+    AlignResult aligned = result(overlaps);
+    context_.report(1.0, "done");
+    return aligned;
   }
 
  private:
@@ -237,7 +242,7 @@ void Alignment::close_loops(const RunContext& context) {
   }
 }
 
-// A refinement that the sure pairs contradict is not taken.
+// A refinement that a pair in use contradicts by twice as many standard deviations as it may is not taken.
 void Alignment::refine(const std::vector<ScanIds>& overlaps, const RunContext& context) {
   std::vector<ScanView> views;
   for (std::size_t i = 0; i < scans_.size(); ++i) views.push_back(view(i));
@@ -245,7 +250,7 @@ void Alignment::refine(const std::vector<ScanIds>& overlaps, const RunContext& c
   for (std::size_t e = 0; e < edges_.size(); ++e) {
     if (graph_.edges[e].use != EdgeUse::Used) continue;
     const EdgeDisagreement off = measure_disagreement(registered_.at(edges_[e]).edge, refined.T_world_scan);
-    if (off.chi_sq <= PoseGraphOptions{}.max_chi_sq) continue;
+    if (off.chi_sq <= 4.0 * PoseGraphOptions{}.max_chi_sq) continue;
     warnings_.push_back(fmt::format(
         "moving all scans at once would contradict the registration of scans {} and {}: their pairs' poses are kept",
         edges_[e].first, edges_[e].second));
