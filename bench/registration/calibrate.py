@@ -16,7 +16,6 @@ import numpy
 
 FEATURES = ("overlap", "contrast", "normal_agreement", "free_space", "conditioning")
 WRONG = 4.0
-RIVAL_POWER = 6  # poses that fit alike share the probability: 1 / (1 + (fit of the rival / fit)^6)
 
 
 def is_right(row):
@@ -30,7 +29,7 @@ def features(row):
         math.log(max(value["overlap"], 1e-3)),
         math.log(min(max(value["contrast"], 0.1), 3.0)),
         math.log(max(value["normal_agreement"], 0.05)),
-        min(value["in_free_space"], 0.3),
+        math.log(max(value["in_free_space"], 0.01)),
         math.log(min(max(value["conditioning"], 1e-7), 1e-2)),
     ]
 
@@ -40,8 +39,9 @@ def determined(row):
     return min(max(math.log10(max(float(row["conditioning"]), 1e-12)) + 4.0, 0.0), 1.0)
 
 
-def rival_share(row):
-    return float(row["rival_fit"]) / max(float(row["fit"]), 1e-9)
+def rival_weight(row):
+    """Poses that fit alike share the probability."""
+    return float(row["rival_weight"])
 
 
 def read(paths):
@@ -56,7 +56,7 @@ def design(rows):
     return numpy.array([[1.0] + features(row) for row in rows]), numpy.array([float(is_right(row)) for row in rows])
 
 
-def fit(x, y, ridge=0.3, steps=100):
+def fit(x, y, ridge=1.0, steps=100):
     """Logistic regression by Newton's method; the ridge holds all but the constant. A wrong pose that is believed does
     more harm than a right one that is not, so it weighs WRONG times as much: the confidence errs on the low side."""
     cost = numpy.where(y > 0, 1.0, WRONG)
@@ -93,7 +93,7 @@ def main():
     rows = read(arguments.train)
     x, y = design(rows)
     if not arguments.as_reported:
-        alone = numpy.array([rival_share(row) < 0.7 and determined(row) == 1.0 for row in rows])
+        alone = numpy.array([rival_weight(row) < 0.1 and determined(row) == 1.0 for row in rows])
         weight = fit(x[alone], y[alone])
         usual = x[alone & (y > 0)].mean(axis=0)
         print(f"constant {weight[0]:.3f}")
@@ -102,9 +102,9 @@ def main():
         if arguments.test:
             rows = read(arguments.test)
             x, y = design(rows)
-        share = numpy.array([rival_share(row) for row in rows])
+        rivals = numpy.array([rival_weight(row) for row in rows])
         held = numpy.array([determined(row) for row in rows])
-        confidence = held / (1.0 + numpy.exp(-(x @ weight))) / (1.0 + share**RIVAL_POWER)
+        confidence = held / (1.0 + numpy.exp(-(x @ weight))) / (1.0 + rivals)
     else:
         confidence = numpy.array([float(row["confidence"]) for row in rows])
     print()

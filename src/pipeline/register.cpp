@@ -116,12 +116,19 @@ std::vector<Attempt> attempts_from(const PreparedScan& source, const PreparedSca
   return attempts;
 }
 
-// How well the best pose fits that is not like the first: near the first one's fit, the answer is ambiguous.
-double rival_fit(const std::vector<Attempt>& attempts, double diagonal) {
-  for (std::size_t i = 1; i < attempts.size(); ++i) {
-    if (!are_alike(attempts[0].T_target_source, attempts[i].T_target_source, diagonal)) return attempts[i].fit;
+// The poses that are neither like the first nor like each other: near the first one's fit, the answer is ambiguous.
+std::vector<double> rival_fits(const std::vector<Attempt>& attempts, double diagonal) {
+  std::vector<const Attempt*> distinct;
+  std::vector<double> fits;
+  for (const Attempt& attempt : attempts) {
+    const bool is_new = std::none_of(distinct.begin(), distinct.end(), [&](const Attempt* other) {
+      return are_alike(attempt.T_target_source, other->T_target_source, diagonal);
+    });
+    if (!is_new) continue;
+    if (!distinct.empty()) fits.push_back(attempt.fit);
+    distinct.push_back(&attempt);
   }
-  return 0.0;
+  return fits;
 }
 
 RigidTransform to_origins(const RigidTransform& T_target_source, const PreparedScan& source,
@@ -165,10 +172,11 @@ RegisterResult register_scans(const PreparedScan& source, const PreparedScan& ta
   }
   result.T_target_source = to_input(best.T_target_source, source, target);
   result.fit = best.fit;
-  result.rival_fit = rival_fit(attempts, source.full.diagonal);
+  std::vector<double> rivals = rival_fits(attempts, source.full.diagonal);
+  result.rival_fit = rivals.empty() ? 0.0 : rivals.front();
+  for (double& rival : rivals) rival /= std::max(best.fit, 1e-12);
   result.assessment =
-      assess_pose(source.full, target.full, best.T_target_source, best.fit > 0.0 ? result.rival_fit / best.fit : 0.0,
-                  context.phase(0.9, 1.0, "assess the pose"));
+      assess_pose(source.full, target.full, best.T_target_source, rivals, context.phase(0.9, 1.0, "assess the pose"));
   result.registration = std::move(best.registration);
   result.source_samples = source.samples.size();
   result.target_samples = target.samples.size();
