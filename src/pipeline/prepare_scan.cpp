@@ -97,14 +97,15 @@ RegistrationCloud subset(const Places& places, std::span<const Index> chosen, co
 
 }  // namespace
 
-PreparedScan prepare_scan(const Geometry& geometry, const RegisterOptions& options, const RunContext& context) {
+PreparedScan prepare_scan(const Geometry& geometry, const RegisterOptions& options, std::string_view name,
+                          const RunContext& context) {
   validate_options(options);
   BuiltGraph built = build_graph(geometry, {}, context.phase(0.0, 0.25, "build graph"));
   const Vec3 origin = built.graph.origin;
   Places places = places_of(built.graph);
   if (places.position.size() < kFewest) {
-    throw InvalidInput(fmt::format("a scan of {} distinct finite points cannot be registered, expected {} or more",
-                                   places.position.size(), kFewest));
+    throw FormatError(fmt::format("{}: {} distinct finite points that are no strays, expected {} or more to register",
+                                  name, places.position.size(), kFewest));
   }
   const std::size_t count = sample_count(options, places.position.size());
   const Choosable from = choosable(std::move(built), geometry.kind(), places, std::max(kMostLookedAt, 4 * count),
@@ -126,9 +127,9 @@ PreparedScan prepare_scan(const Geometry& geometry, const RegisterOptions& optio
     samples = choose(from, count, sampling, context.phase(0.7, 0.9, "choose points"));
   }
   if (samples.size() < kFewest) {
-    throw InvalidInput(fmt::format("only {} points of the scan can be chosen, expected {} or more{}", samples.size(),
-                                   kFewest,
-                                   options.skip_boundary ? "; --no-skip-boundary allows those on its border" : ""));
+    throw FormatError(fmt::format("{}: only {} points can be chosen, expected {} or more{}", name, samples.size(),
+                                  kFewest,
+                                  options.skip_boundary ? "; --no-skip-boundary allows those on its border" : ""));
   }
   const RunContext build = context.phase(0.9, 1.0, "build trees");
   RegistrationCloud thinned = subset(places, samples, build);

@@ -189,8 +189,10 @@ RegisterResult register_scans(const Geometry& source, const Geometry& target,
                               const RunContext& context) {
   RegisterOptions preparing = options;
   preparing.coarse = options.coarse && !T_target_source_init;
-  const PreparedScan prepared_source = prepare_scan(source, preparing, context.phase(0.0, 0.3, "prepare the source"));
-  const PreparedScan prepared_target = prepare_scan(target, preparing, context.phase(0.3, 0.6, "prepare the target"));
+  const PreparedScan prepared_source =
+      prepare_scan(source, preparing, "source", context.phase(0.0, 0.3, "prepare the source"));
+  const PreparedScan prepared_target =
+      prepare_scan(target, preparing, "target", context.phase(0.3, 0.6, "prepare the target"));
   RegisterResult result = register_scans(prepared_source, prepared_target, T_target_source_init, options,
                                          context.phase(0.6, 1.0, "register"));
   context.report(1.0, "done");

@@ -64,9 +64,10 @@ struct PreparedScan {
   std::vector<Index> keypoints;  ///< of `full`, best first: where descriptors are taken
 };
 
-/// Thins a scan. Throws InvalidInput (too few points to register, by cause), TargetUnreachable, Cancelled.
+/// Thins a scan. `name` is what messages call it. Throws FormatError (too few points to register), InvalidInput,
+/// Cancelled.
 [[nodiscard]] PreparedScan prepare_scan(const Geometry& geometry, const RegisterOptions& options = {},
-                                        const RunContext& context = {});
+                                        std::string_view name = "scan", const RunContext& context = {});
 
 struct RegisterResult {
   RigidTransform T_target_source = RigidTransform::Identity();  ///< input frames: p_target = R p_source + t
@@ -83,7 +84,8 @@ struct RegisterResult {
 /// Finds the motion that brings the source onto the target. With `init` it starts there; without, it looks for starting
 /// poses by itself, which needs an overlap of about half or more. The result is assessed, never assumed: look at
 /// assessment.confidence before using the pose.
-/// Throws InvalidInput, Cancelled. Same result for any RunContext.
+/// Throws FormatError (a scan of fewer than 10 distinct points), InvalidInput, Cancelled. Same result for any
+/// RunContext.
 [[nodiscard]] RegisterResult register_scans(const Geometry& source, const Geometry& target,
                                             const std::optional<RigidTransform>& T_target_source_init = {},
                                             const RegisterOptions& options = {}, const RunContext& context = {});
