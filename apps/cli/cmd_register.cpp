@@ -98,6 +98,7 @@ int run_register(const RegisterArguments& arguments, const DescribedFlags<Regist
   const Geometry target = run.read(arguments.target);
   check_outputs();
   run.check_memory((source.size() + target.size()) * kBytesPerPoint);
+  flags.apply(options, bounding_box(target.positions).diagonal());
   const RegisterResult result =
       run.timed("register", [&] { return register_scans(source, target, init, options, run.context()); });
 

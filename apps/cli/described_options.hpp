@@ -49,7 +49,8 @@ class DescribedFlags {
 
   [[nodiscard]] bool was_given(std::string_view name) const { return typed_->count(std::string(name)) > 0; }
 
-  /// Overrides the members that were typed. Lengths may be typed as shares of the diagonal: 2%. Throws InvalidInput.
+  /// Overrides the members that were typed. Lengths may be typed as shares of the diagonal, 2%, and so may shares, 5%.
+  /// Throws InvalidInput.
   void apply(T& options, double diagonal = 1.0) const {
     T::describe(options, [&](const OptionInfo& info, auto& member) {
       const auto found = typed_->find(std::string(info.name));
@@ -107,6 +108,10 @@ class DescribedFlags {
       member = parse_enum<Member>(info.name, text);
     } else if (info.unit == "input length unit" && text.ends_with('%')) {
       member = static_cast<Member>(parse_length(info.name, text).resolve(diagonal));
+      check_range(info, static_cast<double>(member));
+    } else if (info.unit == "1" && std::is_floating_point_v<Member> && text.ends_with('%')) {
+      const std::string percents = text.substr(0, text.size() - 1);
+      member = static_cast<Member>(parse_number(info.name, percents, "a share such as 0.05 or 5%") / 100.0);
       check_range(info, static_cast<double>(member));
     } else {
       const double value = parse_number(info.name, text, std::is_integral_v<Member> ? "a whole number" : "a number");

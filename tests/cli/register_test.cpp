@@ -50,6 +50,20 @@ TEST(RegisterCommand, StartsFromInitAndSearchesNothingThen) {
   EXPECT_EQ(done.json()["result"]["hypotheses"], 0);
 }
 
+TEST(RegisterCommand, SharesAndLengthsMayBeGivenInPercent) {
+  const Workplace work;
+  const Outcome done = work.run({"register", kSource, kTarget, "--init", data("scans/T_dragonStandRight_24_to_0.txt"),
+                                 "--method", "gicp", "--sampler", "random", "--ratio", "10%", "--max-distance", "5%",
+                                 "--json", "-", "-q"});
+  ASSERT_EQ(done.code, 0) << done.err;
+  const nlohmann::json report = done.json();
+  EXPECT_EQ(report["result"]["source_samples"], 3483) << "of 34,833 that are no strays";
+  EXPECT_DOUBLE_EQ(report["options"]["ratio"].get<double>(), 0.1);
+  EXPECT_DOUBLE_EQ(report["options"]["max-distance"].get<double>(),
+                   0.05 * bounding_box(read_geometry(kTarget).positions).diagonal());
+  EXPECT_EQ(work.run({"register", kSource, kTarget, "--ratio", "150%"}).code, 2);
+}
+
 TEST(RegisterCommand, AWrongPairIsRefusedAndNothingIsWritten) {
   const Workplace work;
   const Outcome refused = work.run({"register", data("meshes/fandisk.off"), kTarget, "-o", work.path("moved.ply"),
