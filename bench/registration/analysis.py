@@ -18,6 +18,9 @@ class Runs:
     def __init__(self, rows):
         self.cells = defaultdict(lambda: defaultdict(list))
         for row in rows:
+            for name in ("e_mu", "e_delta"):
+                if row.get(name):
+                    row[f"relative_{name}"] = float(row[name]) / float(row[f"truth_{name}"])
             self.cells[row["method"], row["sampler"], float(row["percent"])][row["pair"]].append(row)
         self.truth = {row["pair"]: row["truth"] for row in rows if "truth" in row}
 
@@ -140,7 +143,7 @@ def sweep_table(runs, methods, samplers, percents):
                 return median_of([found[p] for p in common if p in found])
 
             lines.append([method, sampler,
-                          *(" / ".join([number(over_pairs(p, "rotation_deg")), number(over_pairs(p, "e_mu")),
+                          *(" / ".join([number(over_pairs(p, "rotation_deg")), number(over_pairs(p, "relative_e_mu")),
                                         number(over_pairs(p, "cpu_ms"), ".0f")]) for p in percents)])
     return markdown_table(["method", "sampler", *(f"{p:g} %" for p in percents)], lines)
 

@@ -23,6 +23,15 @@ PERCENTS = [95.0, 50.0, 25.0, 10.0, 5.0]
 MARK = "<!-- measured: written by bench/registration/figure9.py -->"
 
 
+def plain_ticks(axis):
+    """1, 2 and 5 in every decade, as numbers."""
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+    axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axis.set_minor_formatter(NullFormatter())
+
+
 def plots(runs, folder):
     import matplotlib
     matplotlib.use("svg")
@@ -30,8 +39,8 @@ def plots(runs, folder):
     import matplotlib.pyplot as plt
 
     folder.mkdir(parents=True, exist_ok=True)
-    columns = {"rotation_deg": "rotation error [degrees]", "e_mu": "e_mu [point spacings]",
-               "e_delta": "e_delta [point spacings]", "cpu_ms": "CPU [ms]"}
+    columns = {"rotation_deg": "rotation error [degrees]", "relative_e_mu": "e_mu / e_mu at the truth",
+               "relative_e_delta": "e_delta / e_delta at the truth", "cpu_ms": "CPU [ms]"}
     for method, name in (("ficp-pure", "FICP"), ("softicp", "SoftICP")):
         figure, panels = plt.subplots(1, len(columns), figsize=(13, 3.2))
         for panel, (column, label) in zip(panels, columns.items()):
@@ -44,7 +53,9 @@ def plots(runs, folder):
             panel.set_xticks(range(len(PERCENTS)), [f"{p:g}" for p in PERCENTS])
             panel.set_xlabel("P [% kept]")
             panel.set_ylabel(label)
-            panel.set_yscale("log")
+            if column in ("rotation_deg", "cpu_ms"):
+                panel.set_yscale("log")
+                plain_ticks(panel.yaxis)
         panels[0].legend(fontsize=7)
         figure.suptitle(f"{name}: median of the pairs that were run at every P", fontsize=10)
         figure.tight_layout()
@@ -68,6 +79,7 @@ def ratio_plot(runs, path, percent=5.0):
                 panel.plot(r["ratio"], i, "o", color="C0")
         panel.axvline(1.0, color="grey", linewidth=0.8)
         panel.set_xscale("log")
+        plain_ticks(panel.xaxis)
         panel.set_title(method, fontsize=10)
         panel.set_xlabel(f"error / error with {analysis.SPS}")
         panel.set_yticks(range(len(samplers)), samplers)
@@ -101,7 +113,7 @@ def document(runs, samplings, peers, images, arguments):
         + analysis.unsolved_table(runs, ["ficp", "ficp-pure", "softicp", "gicp"], [analysis.SBS, analysis.SPS], 5.0),
         "## The border or the shape? (P = 5 %)\n\n" + analysis.border_table(runs, methods, 5.0),
         "## Do two samplings keep the same places? (P = 5 %)\n\n" + analysis.sampling_table(samplings, 5.0),
-        "## Against P\n\nRotation error [degrees] / e_mu on the full scans [point spacings] / CPU of the registration "
+        "## Against P\n\nRotation error [degrees] / e_mu on the full scans over e_mu at the truth / CPU of the registration "
         "[ms]: medians over the pairs that were run at every P.\n\n"
         + analysis.sweep_table(runs, ["ficp", "ficp-pure", "softicp", "gicp"], plan.FEW_SAMPLERS, PERCENTS)
         + "".join(f"\n![{image}](images/{image})\n" for image in images),
