@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Sets up everything on a Debian 12 machine, builds, and samples a real scan; leaves the result and a picture in out/.
+# Sets up everything on a Debian 12 machine, builds, samples and simplifies a real scan and registers another one with it;
+# leaves the results and pictures in out/.
 set -euo pipefail
 cd "$(dirname "$0")"
 
@@ -20,7 +21,13 @@ echo
 "$shapelight" simplify "$scan" -o out/quickstart/simplified.ply --ratio 5% --placement optimal --measure --force
 "$shapelight" render "$scan" out/quickstart/simplified.ply -o out/quickstart/simplified.png --force --width 1800 --height 800
 echo
+"$shapelight" register data/scans/dragonStandRight_24.ply "$scan" -o out/quickstart/registered.ply \
+  --transform out/quickstart/transform.txt --force
+"$shapelight" sample out/quickstart/registered.ply -o out/quickstart/dots.ply --count 2500 --method farthest -q --force
+"$shapelight" render "$scan" -o out/quickstart/registered.png --dots out/quickstart/dots.ply --width 1200 --height 900 --force
+echo
 echo "the sample:  out/quickstart/sample.ply"
 echo "the picture: out/quickstart/sample.png (the scan by reflectance, by segments, and plain; the samples on top)"
 echo "the mesh:    out/quickstart/simplified.ply, a twentieth of the vertices; beside the scan in simplified.png"
+echo "the poses:   out/quickstart/registered.ply, a second scan brought onto the first; registered.png, transform.txt"
 echo "the tool:    $shapelight --help"

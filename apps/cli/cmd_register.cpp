@@ -57,6 +57,7 @@ nlohmann::ordered_json result_json(const RegisterResult& result) {
           {"covariance", matrix_json(pose.covariance)},
           {"fit", result.fit},
           {"rival_fit", result.rival_fit},
+          {"rival_weight", pose.rival_weight},
           {"confidence", pose.confidence},
           {"doubt", pose.doubt},
           {"source_samples", result.source_samples},

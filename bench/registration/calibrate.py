@@ -14,8 +14,8 @@ import sys
 
 import numpy
 
-FEATURES = ("overlap", "contrast", "residual", "normal_agreement", "free_space", "conditioning")
-RIVAL_POWER = 6  # poses that fit alike share the probability: 1 / (1 + (fit of the rival / fit)^6)
+FEATURES = ("overlap", "contrast", "normal_agreement", "free_space", "conditioning")
+WRONG = 4.0
 
 
 def is_right(row):
@@ -27,16 +27,21 @@ def features(row):
     value = {name: float(row[name]) for name in row if name not in ("kind", "source", "target")}
     return [
         math.log(max(value["overlap"], 1e-3)),
-        math.log(max(value["contrast"], 0.1)),
-        math.log(max(value["residual"] / max(value["gate"], 1e-12), 1e-3)),
-        value["normal_agreement"],
-        min(value["in_free_space"], 0.3),
+        math.log(min(max(value["contrast"], 0.1), 3.0)),
+        math.log(max(value["normal_agreement"], 0.05)),
+        math.log(max(value["in_free_space"], 0.01)),
         math.log(min(max(value["conditioning"], 1e-7), 1e-2)),
     ]
 
 
-def rival_share(row):
-    return float(row["rival_fit"]) / max(float(row["fit"]), 1e-9)
+def determined(row):
+    """0 when the surfaces leave a motion free, 1 when they leave none."""
+    return min(max(math.log10(max(float(row["conditioning"]), 1e-12)) + 4.0, 0.0), 1.0)
+
+
+def rival_weight(row):
+    """Poses that fit alike share the probability."""
+    return float(row["rival_weight"])
 
 
 def read(paths):
@@ -51,15 +56,17 @@ def design(rows):
     return numpy.array([[1.0] + features(row) for row in rows]), numpy.array([float(is_right(row)) for row in rows])
 
 
-def fit(x, y, ridge=1e-2, steps=100):
-    """Logistic regression by Newton's method; the ridge holds all but the constant."""
+def fit(x, y, ridge=1.0, steps=100):
+    """Logistic regression by Newton's method; the ridge holds all but the constant. A wrong pose that is believed does
+    more harm than a right one that is not, so it weighs WRONG times as much: the confidence errs on the low side."""
+    cost = numpy.where(y > 0, 1.0, WRONG)
     weight = numpy.zeros(x.shape[1])
     penalty = ridge * numpy.eye(x.shape[1])
     penalty[0, 0] = 0.0
     for _ in range(steps):
         p = 1.0 / (1.0 + numpy.exp(-numpy.clip(x @ weight, -40, 40)))
-        gradient = x.T @ (y - p) - penalty @ weight
-        hessian = (x * (p * (1.0 - p))[:, None]).T @ x + penalty
+        gradient = x.T @ (cost * (y - p)) - penalty @ weight
+        hessian = (x * (cost * p * (1.0 - p))[:, None]).T @ x + penalty
         weight += numpy.linalg.solve(hessian, gradient)
     return weight
 
@@ -86,7 +93,7 @@ def main():
     rows = read(arguments.train)
     x, y = design(rows)
     if not arguments.as_reported:
-        alone = numpy.array([rival_share(row) < 0.7 for row in rows])
+        alone = numpy.array([rival_weight(row) < 0.1 and determined(row) == 1.0 for row in rows])
         weight = fit(x[alone], y[alone])
         usual = x[alone & (y > 0)].mean(axis=0)
         print(f"constant {weight[0]:.3f}")
@@ -95,8 +102,9 @@ def main():
         if arguments.test:
             rows = read(arguments.test)
             x, y = design(rows)
-        share = numpy.array([rival_share(row) for row in rows])
-        confidence = 1.0 / (1.0 + numpy.exp(-(x @ weight))) / (1.0 + share**RIVAL_POWER)
+        rivals = numpy.array([rival_weight(row) for row in rows])
+        held = numpy.array([determined(row) for row in rows])
+        confidence = held / (1.0 + numpy.exp(-(x @ weight))) / (1.0 + rivals)
     else:
         confidence = numpy.array([float(row["confidence"]) for row in rows])
     print()

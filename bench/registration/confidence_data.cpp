@@ -247,7 +247,7 @@ void report(std::uint64_t run, const Case& c, const RegisterResult& result) {
              c.target.shape, c.source.scan.geometry.viewpoint.has_value() ? 1 : 0, rotation, shift, pose.overlap,
              pose.gate / box.diagonal(), pose.residual / box.diagonal(), pose.contrast, pose.normal_agreement,
              pose.in_free_space, pose.conditioning, pose.weakest.uncertainty / box.diagonal(), pose.reciprocal.share,
-             result.fit, result.rival_fit, result.registration.inlier_ratio, pose.confidence);
+             result.fit, result.rival_fit, pose.rival_weight, pose.confidence);
   std::fflush(stdout);
 }
 
@@ -277,7 +277,7 @@ int run(int argc, char** argv) {
   const std::vector<Shape> ambiguous = ambiguous_shapes();
   fmt::print(
       "run,kind,source,target,viewpoint,rotation_deg,shift,overlap,gate,residual,contrast,normal_agreement,"
-      "in_free_space,conditioning,uncertainty,reciprocal_share,fit,rival_fit,inlier_ratio,confidence\n");
+      "in_free_space,conditioning,uncertainty,reciprocal_share,fit,rival_fit,rival_weight,confidence\n");
   for (std::uint64_t i = part; i < runs; i += parts) {
     Draw draw(seed, i);
     const bool is_real = !pairs.empty() && draw.uniform(0.0, 1.0) < 0.5;

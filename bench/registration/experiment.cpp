@@ -213,7 +213,7 @@ class Experiment {
   }
 
   void add(Pair& pair) {
-    truth_ = assess_pose(pair.source.prepared.full, pair.target.prepared.full, pair.T_target_source, 0.0, kOneThread);
+    truth_ = assess_pose(pair.source.prepared.full, pair.target.prepared.full, pair.T_target_source, {}, kOneThread);
     const std::vector<Start> starts = starting_poses(pair, plan_.starts, plan_.angles[0], plan_.angles[1]);
     for (const std::string& name : plan_.samplers) {
       Sampler sampler(name);
@@ -272,7 +272,7 @@ class Experiment {
   // On the full scans; lengths in point spacings of the target.
   void add_assessment(const Pair& pair, RegistrationMethod method, const RigidTransform& T_target_source) {
     const PreparedScan &source = pair.source.prepared, &target = pair.target.prepared;
-    const ReciprocalError error = assess_pose(source.full, target.full, T_target_source, 0.0, kOneThread).reciprocal;
+    const ReciprocalError error = assess_pose(source.full, target.full, T_target_source, {}, kOneThread).reciprocal;
     const double begin = cpu_ms();
     const RegisterResult polished = polish(pair, method, T_target_source);
     const double cpu = cpu_ms() - begin;

@@ -8,6 +8,7 @@ covariances of the samples) and of registration apart.
 
 import argparse
 import csv
+import importlib
 import os
 import sys
 import time
@@ -31,6 +32,7 @@ def error_of(pose, truth, middle, diagonal):
 
 
 class SmallGicp:
+    MODULE = "small_gicp"
     TYPES = {"small_gicp icp": "ICP", "small_gicp plane": "PLANE_ICP", "small_gicp gicp": "GICP"}
 
     def __init__(self, source, target, diagonal):
@@ -50,6 +52,7 @@ class SmallGicp:
 
 
 class Open3d:
+    MODULE = "open3d"
     TYPES = {"open3d icp": "TransformationEstimationPointToPoint",
              "open3d plane": "TransformationEstimationPointToPlane",
              "open3d gicp": "TransformationEstimationForGeneralizedICP"}
@@ -101,14 +104,16 @@ def main():
     rows = []
     for peer in (SmallGicp, Open3d):
         try:
-            for folder in sorted(p for p in arguments.exported.iterdir() if p.is_dir()):
-                for sampler in arguments.samplers:
-                    for percent in arguments.percent:
-                        samples = folder / f"{sampler}-{percent}"
-                        if samples.is_dir():
-                            measure(peer, folder, samples, rows)
+            importlib.import_module(peer.MODULE)
         except ImportError as error:
-            print(f"{peer.__name__}: not installed, skipped ({error})", file=sys.stderr)
+            print(f"{peer.MODULE}: not installed, skipped ({error})", file=sys.stderr)
+            continue
+        for folder in sorted(p for p in arguments.exported.iterdir() if p.is_dir()):
+            for sampler in arguments.samplers:
+                for percent in arguments.percent:
+                    samples = folder / f"{sampler}-{percent}"
+                    if samples.is_dir():
+                        measure(peer, folder, samples, rows)
     with open(arguments.output, "w", newline="") as file:
         if rows:
             writer = csv.DictWriter(file, rows[0])

@@ -113,12 +113,8 @@ void Alignment::prepare(std::span<const Geometry> scans, const RunContext& conte
   scans_.reserve(scans.size());
   for (std::size_t i = 0; i < scans.size(); ++i) {
     const double share = 1.0 / static_cast<double>(scans.size());
-    try {
-      scans_.push_back(prepare_scan(scans[i], options_.registration,
-                                    context.phase(share * double(i), share * double(i + 1), "prepare scans")));
-    } catch (const InvalidInput& error) {
-      throw InvalidInput(fmt::format("scan {}: {}", i, error.what()));
-    }
+    scans_.push_back(prepare_scan(scans[i], options_.registration, fmt::format("scan {}", i),
+                                  context.phase(share * double(i), share * double(i + 1), "prepare scans")));
   }
 }
 

@@ -73,6 +73,9 @@ double share_in_free_space(const RegistrationCloud& source, const RegistrationCl
   return both.in_sight > 0 ? static_cast<double>(both.seen_through) / static_cast<double>(both.in_sight) : 0.0;
 }
 
+constexpr double kRivalPower =
+    6.0;  // poses that fit alike share the probability, those that fit half as well have none
+
 ReciprocalError reciprocal_error(const BothWays& both) {
   ReciprocalError error;
   double sum = 0.0, sum_sq = 0.0;
@@ -168,7 +171,8 @@ void measure_conditioning(const Information& info, PoseAssessment& result) {
 }  // namespace
 
 PoseAssessment assess_pose(const RegistrationCloud& source, const RegistrationCloud& target,
-                           const RigidTransform& T_target_source, double rival_share, const RunContext& context) {
+                           const RigidTransform& T_target_source, std::span<const double> rivals,
+                           const RunContext& context) {
   check(source, "source");
   check(target, "target");
   const BothWays both = pair_both_ways(source, target, T_target_source, context);
@@ -182,7 +186,8 @@ PoseAssessment assess_pose(const RegistrationCloud& source, const RegistrationCl
   measure_overlap(both, result);
   result.in_free_space = share_in_free_space(source, target, T_target_source, gate.width, context);
   measure_conditioning(information(source, target, T_target_source, both.forward(), gate.width), result);
-  const Judgement judgement = judge_pose(result, rival_share);
+  for (const double share : rivals) result.rival_weight += std::pow(share, kRivalPower);
+  const Judgement judgement = judge_pose(result);
   result.confidence = judgement.confidence;
   result.doubt = judgement.doubt;
   return result;

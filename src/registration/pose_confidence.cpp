@@ -19,45 +19,49 @@ struct Measure {
   [[nodiscard]] double against() const { return weight * (usual - value); }
 };
 
-constexpr double kConstant = 2.344;
-constexpr double kRivalPower = 6.0;  // poses that fit alike share the probability
+std::string undetermined(const PoseAssessment& pose) {
+  return fmt::format("the surfaces do not determine the pose: {}",
+                     pose.weakest.name.empty() ? "they do not meet" : pose.weakest.name);
+}
+
+// 0 when the surfaces leave a motion free, 1 when they leave none.
+double determined(const PoseAssessment& pose) {
+  return std::clamp(std::log10(std::max(pose.conditioning, 1e-12)) + 4.0, 0.0, 1.0);
+}
+
+constexpr double kConstant = 2.82;
 
 // In the order of calibrate.py, which computes the same values and prints weights and usual values.
-std::array<Measure, 6> measures_of(const PoseAssessment& pose) {
-  const double residual_share = pose.gate > 0.0 ? pose.residual / pose.gate : 1.0;
+std::array<Measure, 5> measures_of(const PoseAssessment& pose) {
   return {{
-      {0.267, -0.4, std::log(std::max(pose.overlap, 1e-3)),
+      {3.10, -0.33, std::log(std::max(pose.overlap, 1e-3)),
        fmt::format("the scans overlap by {:.0f} % only", 100.0 * pose.overlap)},
-      {5.461, 0.75, std::log(std::max(pose.contrast, 0.1)),
-       fmt::format(
-           "the surfaces do not settle on each other: they lie as far apart ({:.3g}) as surfaces that just cross",
-           pose.residual)},
-      {-1.364, -2.4, std::log(std::max(residual_share, 1e-3)),
-       fmt::format("the surfaces lie {:.3g} apart where they meet", pose.residual)},
-      {1.909, 0.9, pose.normal_agreement,
+      {5.38, 0.84, std::log(std::clamp(pose.contrast, 0.1, 3.0)),
+       fmt::format("the surfaces do not settle on each other: they lie {:.3g} apart, like surfaces that just cross",
+                   pose.residual)},
+      {1.47, -0.08, std::log(std::max(pose.normal_agreement, 0.05)),
        fmt::format("the surfaces face the same way on {:.0f} % of the overlap only", 100.0 * pose.normal_agreement)},
-      {-0.742, 0.005, std::min(pose.in_free_space, 0.3),
+      {-1.55, -4.58, std::log(std::max(pose.in_free_space, 0.01)),
        fmt::format("{:.1f} % of the points stand where a sensor looked through", 100.0 * pose.in_free_space)},
-      {1.676, std::log(1e-2), std::log(std::clamp(pose.conditioning, 1e-7, 1e-2)),
-       fmt::format("the surfaces do not determine the pose: {}",
-                   pose.weakest.name.empty() ? "they do not meet" : pose.weakest.name)},
+      {2.00, -4.62, std::log(std::clamp(pose.conditioning, 1e-7, 1e-2)), undetermined(pose)},
   }};
 }
 
 }  // namespace
 
-Judgement judge_pose(const PoseAssessment& pose, double rival_share) {
-  const std::array<Measure, 6> measures = measures_of(pose);
+Judgement judge_pose(const PoseAssessment& pose) {
+  const std::array<Measure, 5> measures = measures_of(pose);
   double logit = kConstant;
   for (const Measure& measure : measures) logit += measure.weight * measure.value;
   const auto worst = std::max_element(measures.begin(), measures.end(),
                                       [](const Measure& a, const Measure& b) { return a.against() < b.against(); });
-  const double alone = 1.0 / (1.0 + std::exp(-logit));
-  const double shared = 1.0 / (1.0 + std::pow(rival_share, kRivalPower));
-  if (alone >= 0.5 && alone * shared < 0.5) {
-    return {alone * shared, fmt::format("another pose fits {:.0f} % as well", 100.0 * rival_share)};
+  const double held = determined(pose) / (1.0 + std::exp(-logit));
+  const double shared = 1.0 / (1.0 + pose.rival_weight);
+  if (determined(pose) < 0.5) return {held * shared, undetermined(pose)};
+  if (held >= 0.5 && held * shared < 0.5) {
+    return {held * shared, "another pose fits nearly as well"};
   }
-  Judgement judgement{alone * shared, {}};
+  Judgement judgement{held * shared, {}};
   if (worst->against() > 0.0) judgement.doubt = worst->doubt;
   return judgement;
 }

@@ -12,8 +12,8 @@ struct Judgement {
   std::string doubt;        ///< what speaks most against the pose; empty when nothing does
 };
 
-/// Logistic regression over the measures of an assessment and the share of its fit that another pose reaches as well;
+/// Logistic regression over the measures of an assessment, shared with rivals, and void when some motion is free;
 /// fitted to registrations of known truth by bench/registration/calibrate.py.
-[[nodiscard]] Judgement judge_pose(const PoseAssessment& pose, double rival_share);
+[[nodiscard]] Judgement judge_pose(const PoseAssessment& pose);
 
 }  // namespace shapelight::registration

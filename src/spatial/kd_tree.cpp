@@ -28,9 +28,7 @@ double box_distance_sq(const Point& min, const Point& max, const Point& query) {
 // The best `capacity` neighbours so far, kept sorted: at the sizes in use, shifting beats a heap.
 class KdTree::Candidates {
  public:
-  Candidates(std::size_t capacity, std::vector<Neighbor>& storage,
-             double limit_sq = std::numeric_limits<double>::infinity())
-      : storage_(storage), capacity_(capacity), worst_(limit_sq) {
+  Candidates(std::size_t capacity, std::vector<Neighbor>& storage) : storage_(storage), capacity_(capacity) {
     storage_.resize(capacity);
     best_ = storage_.data();
   }
@@ -38,6 +36,8 @@ class KdTree::Candidates {
   Candidates(const Candidates&) = delete;
   Candidates& operator=(const Candidates&) = delete;
 
+  /// None farther than this; before the first offer.
+  void limit(double distance_sq) { worst_ = distance_sq; }
   [[nodiscard]] double worst() const { return worst_; }
   void offer(const Neighbor& found) {
     std::size_t place = count_;
@@ -58,7 +58,7 @@ class KdTree::Candidates {
   Neighbor* best_ = nullptr;
   std::size_t count_ = 0;
   std::size_t capacity_;
-  double worst_;
+  double worst_ = std::numeric_limits<double>::infinity();
 };
 
 KdTree::KdTree(std::span<const Vec3> points) : index_(points.size()) {
@@ -131,7 +131,8 @@ void KdTree::search(std::uint32_t node, const Point& query, Candidates& found) c
 }
 
 void KdTree::nearest(const Vec3& query, std::size_t k, std::vector<Neighbor>& found, double limit_sq) const {
-  Candidates candidates(std::min(k, size()), found, limit_sq);
+  Candidates candidates(std::min(k, size()), found);
+  candidates.limit(limit_sq);
   if (k > 0 && !nodes_.empty()) search(0, to_array(query), candidates);
 }
 

@@ -76,8 +76,8 @@ TEST(RegisterCommand, TooFewPointsAreRefused) {
   const Workplace work;
   std::ofstream(work.path("three.xyz")) << "0 0 0\n1 0 0\n0 1 0\n";
   const Outcome refused = work.run({"register", work.path("three.xyz"), kTarget});
-  EXPECT_EQ(refused.code, 2);
-  EXPECT_TRUE(contains(refused.err, "3 distinct finite points")) << refused.err;
+  EXPECT_EQ(refused.code, 4);
+  EXPECT_TRUE(contains(refused.err, "source: 3 distinct finite points")) << refused.err;
 }
 
 }  // namespace

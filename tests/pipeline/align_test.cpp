@@ -191,7 +191,7 @@ TEST(AlignScans, RefusesWhatMakesNoSense) {
   try {
     (void)align_scans(views.scans, {});
     ADD_FAILURE() << "accepted";
-  } catch (const InvalidInput& error) {
+  } catch (const FormatError& error) {
     EXPECT_NE(std::string(error.what()).find("scan 1"), std::string::npos) << error.what();
   }
   AlignOptions beyond;

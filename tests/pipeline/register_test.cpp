@@ -119,13 +119,13 @@ TEST(Register, DoubtsWhatCannotBeKnown) {
 TEST(Register, RefusesWhatIsNoScan) {
   const Geometry good = dragon().target;
   Geometry bad;
-  EXPECT_THROW((void)register_scans(bad, good), InvalidInput);
+  EXPECT_THROW((void)register_scans(bad, good), FormatError);
   bad.positions.assign(5, Vec3(1, 2, 3));
-  EXPECT_THROW((void)register_scans(bad, good), InvalidInput);
+  EXPECT_THROW((void)register_scans(bad, good), FormatError);
   bad.positions.assign(1000, Vec3(1, 2, 3));  // one place
-  EXPECT_THROW((void)register_scans(bad, good), InvalidInput);
+  EXPECT_THROW((void)register_scans(bad, good), FormatError);
   bad.positions.assign(1000, Vec3::Constant(std::numeric_limits<double>::quiet_NaN()));
-  EXPECT_THROW((void)register_scans(good, bad), InvalidInput);
+  EXPECT_THROW((void)register_scans(good, bad), FormatError);
 }
 
 // A line of points has no surface: never a pose that looks good.
@@ -137,7 +137,7 @@ TEST(Register, DoubtsCollinearAndPlanarPoints) {
     double confidence = 0.0;
     try {
       confidence = register_scans(*cloud, *cloud).assessment.confidence;
-    } catch (const InvalidInput&) {
+    } catch (const FormatError&) {
       continue;  // as good an answer
     }
     EXPECT_LT(confidence, 0.5);

@@ -92,6 +92,43 @@ TEST_P(IcpMetrics, ComesToRestOnRealScans) {
   EXPECT_TRUE(register_by_icp(source, target, scans.T_target_source, with_metric(GetParam())).converged());
 }
 
+// Sparse sheets whose pairs would change back and forth for ever, under every eighth seed or so.
+TEST(Icp, ComesToRestWherePairsAlternate) {
+  IcpOptions options = with_metric(IcpMetric::Plane);
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    const testing::Sheet a = testing::wavy_sheet(100, seed), b = testing::wavy_sheet(100, seed + 1000);
+    const RegistrationCloud source(a.positions, a.normals), target(b.positions, b.normals);
+    EXPECT_TRUE(register_by_icp(source, target, motion(0.1, Vec3(1, 2, 3), Vec3(0.1, 0, 0.05)), options).converged())
+        << seed;
+  }
+}
+
+TEST(Icp, GicpCostIsThatOfTheCovariances) {
+  const testing::Sheet a = testing::wavy_sheet(60, 1), b = testing::wavy_sheet(60, 2);
+  IcpOptions options = with_metric(IcpMetric::Gicp);
+  options.max_distance = 10.0;
+  options.max_iterations = 1;
+  const double error = register_by_icp(RegistrationCloud(a.positions, a.normals),
+                                       RegistrationCloud(b.positions, b.normals), kPose, options)
+                           .error.front();
+  const auto covariance = [](const Vec3& n) {
+    return Eigen::Matrix3d(Eigen::Matrix3d::Identity() - (1.0 - 1e-3) * n * n.transpose());
+  };
+  const Eigen::Matrix3d R = kPose.linear();
+  double sum = 0.0;
+  for (std::size_t i = 0; i < 60; ++i) {
+    const Vec3 x = kPose * a.positions[i];
+    std::size_t best = 0;
+    for (std::size_t j = 1; j < 60; ++j) {
+      if ((x - b.positions[j]).squaredNorm() < (x - b.positions[best]).squaredNorm()) best = j;
+    }
+    const Vec3 r = x - b.positions[best];
+    const Eigen::Matrix3d both = covariance(b.normals[best]) + R * covariance(a.normals[i]) * R.transpose();
+    sum += r.dot(both.inverse() * r);
+  }
+  EXPECT_NEAR(error, std::sqrt(sum / 60.0), 1e-9 * error);
+}
+
 TEST(Icp, FarPairsHaveNoSay) {
   testing::Sheet sheet = testing::wavy_sheet(1000, 1);
   const RegistrationCloud target(sheet.positions, sheet.normals);

@@ -153,7 +153,7 @@ TEST(PoseAssessment, SameForAnyNumberOfThreads) {
   const RegistrationCloud target = cloud_of(testing::saddle(120, 0.02));
   const RegistrationCloud source = cloud_of(testing::with_noise(testing::saddle(120, 0.02), 1e-3));
   testing::expect_same_for_any_number_of_threads([&](const RunContext& context) {
-    const PoseAssessment pose = assess_pose(source, target, motion(0.01, {1, 1, 0}, {0.01, 0, 0}), 0.0, context);
+    const PoseAssessment pose = assess_pose(source, target, motion(0.01, {1, 1, 0}, {0.01, 0, 0}), {}, context);
     return std::vector{pose.reciprocal.mean, pose.overlap, pose.residual, pose.conditioning, pose.covariance(2, 4)};
   });
 }

@@ -47,6 +47,20 @@ TEST(RigidFit, DoesNotTurnALineAboutItself) {
   EXPECT_NEAR((T * Vec3::UnitZ() - Vec3::UnitZ()).norm(), 0.0, 1e-6);  // the shortest way there
 }
 
+TEST(RigidFit, TurnsAnyLineTheShortestWay) {
+  for (std::uint64_t s = 0; s < 20; ++s) {
+    const Vec3 a = Vec3(random01(1, 0, s), random01(1, 1, s), random01(1, 2, s)).normalized();
+    const Vec3 b = Vec3(random01(2, 0, s), random01(2, 1, s), random01(2, 2, s)).normalized();
+    std::vector<Vec3> from, to;
+    for (std::uint64_t i = 0; i < 10; ++i) {
+      from.push_back(random01(3, s, i) * a + b);
+      to.push_back(random01(3, s, i) * b);
+    }
+    const double angle = testing::rotation_between(fit(from, to), RigidTransform::Identity());
+    EXPECT_NEAR(angle, std::acos(a.dot(b)), 1e-5);
+  }
+}
+
 TEST(RigidFit, OnePlaceIsShiftedOnly) {
   const RigidTransform T = fit(std::vector<Vec3>(5, Vec3(1, 2, 3)), std::vector<Vec3>(5, Vec3(2, 2, 2)));
   EXPECT_TRUE(T.linear().isIdentity(1e-12));

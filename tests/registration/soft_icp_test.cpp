@@ -71,11 +71,13 @@ TEST_P(SoftIcpCandidates, OpenCloudsGiveFinitePosesAndNoWildMotion) {
   const RigidTransform start = motion(0.05, Vec3(1, 1, 0), Vec3(0.02, 0.01, 0.03));
   for (const testing::OpenCloud& from : testing::open_clouds()) {
     for (const testing::OpenCloud& to : testing::open_clouds()) {
-      const RegistrationResult result = register_by_soft_icp(
-          RegistrationCloud(from.positions), RegistrationCloud(to.positions), start, with_candidates(GetParam()));
-      EXPECT_TRUE(result.T_target_source.matrix().allFinite()) << from.name << " " << to.name;
-      EXPECT_LT(result.T_target_source.translation().norm(), 10.0) << from.name << " " << to.name;
-      EXPECT_TRUE(std::isfinite(result.rms));
+      for (const RigidTransform& T : {start, RigidTransform(RigidTransform::Identity())}) {
+        const RegistrationResult result = register_by_soft_icp(
+            RegistrationCloud(from.positions), RegistrationCloud(to.positions), T, with_candidates(GetParam()));
+        EXPECT_TRUE(result.T_target_source.matrix().allFinite()) << from.name << " " << to.name;
+        EXPECT_LT(result.T_target_source.translation().norm(), 10.0) << from.name << " " << to.name;
+        EXPECT_TRUE(std::isfinite(result.rms)) << from.name << " " << to.name;
+      }
     }
   }
 }

@@ -137,11 +137,17 @@ TEST(TriangleRay, NothingSlipsThroughEdges) {
 TEST(TriangleRay, TiesGoToTheSmallestIndex) {
   TriangleMesh mesh = mesh_of(testing::sphere(3, 1.0));
   const TriangleTree tree(mesh);
-  mesh.triangles.insert(mesh.triangles.end(), mesh.triangles.begin(), mesh.triangles.end());
+  const auto count = static_cast<Index>(mesh.triangles.size());
+  const std::vector<Triangle> once = mesh.triangles;
+  mesh.triangles.insert(mesh.triangles.end(), once.begin(), once.end());
   const TriangleTree doubled(mesh);
+  std::copy(once.rbegin(), once.rend(), mesh.triangles.begin());
+  const TriangleTree mirrored(mesh);
   for (const Vec3& p : test::random_points(300, 6)) {
     const Vec3 direction = p - Vec3(0.5, 0.5, 0.5);
-    EXPECT_EQ(doubled.first_hit(Vec3::Zero(), direction).triangle, tree.first_hit(Vec3::Zero(), direction).triangle);
+    const Index expected = tree.first_hit(Vec3::Zero(), direction).triangle;
+    EXPECT_EQ(doubled.first_hit(Vec3::Zero(), direction).triangle, expected);
+    EXPECT_EQ(mirrored.first_hit(Vec3::Zero(), direction).triangle, count - 1 - expected);
   }
   // Four triangles about a corner straight ahead.
   const TriangleTree fan(TriangleMesh{{{0, 0, 1}, {1, 0, 1}, {0, 1, 1}, {-1, 0, 1}, {0, -1, 1}},
@@ -165,6 +171,7 @@ TEST(TriangleRay, FarOffsetsAndScales) {
         ASSERT_EQ(hit.triangle, expected.triangle) << scale;
         if (hit) {
           ASSERT_NEAR((hit.point / scale - expected.point).norm(), 0.0, 1e-12) << scale;
+          ASSERT_NEAR(hit.distance / scale * length, expected.distance, 1e-12) << scale;
         }
       }
     }

@@ -184,7 +184,8 @@ TEST(VirtualScan, CamerasStandWhereTheirAnglesSay) {
 }
 
 TEST(VirtualScan, TheBoundingSphereSkipsWhatIsNoPoint) {
-  const BoundingSphere sphere = bounding_sphere(std::vector<Vec3>{{0, 0, 0}, {4, 0, 0}, {std::nan(""), 0, 0}});
+  const BoundingSphere sphere =
+      bounding_sphere(std::vector<Vec3>{{0, 0, 0}, {4, 0, 0}, {std::nan(""), 0, 0}, {HUGE_VAL, 0, 0}});
   EXPECT_EQ(sphere.center, Vec3(2, 0, 0));
   EXPECT_EQ(sphere.radius, 2.0);
   EXPECT_EQ(bounding_sphere({}).radius, 0.0);

@@ -36,7 +36,7 @@ struct RegisterOptions {
   double ratio = 0.0;         ///< [1] share of each scan's points that is registered; 0: 2000 to 10000 points
   bool skip_boundary = true;  ///< choose no points on the border of a scan: they have no counterpart
   bool coarse = true;         ///< without a starting pose look for one; else start where the files say
-  bool polish = true;         ///< at the end, a few steps of the sampled source against the full target's surface
+  bool polish = true;  ///< at the end, a few steps against the full target's surface: of the samples, then of more
   double max_distance = 0.0;  ///< [input length unit] of icp, plane and gicp; 0: a tenth of the target's diagonal
   std::uint64_t seed = 0;     ///< of samplers that draw at random
 
@@ -64,9 +64,10 @@ struct PreparedScan {
   std::vector<Index> keypoints;  ///< of `full`, best first: where descriptors are taken
 };
 
-/// Thins a scan. Throws InvalidInput (too few points to register, by cause), TargetUnreachable, Cancelled.
+/// Thins a scan. `name` is what messages call it. Throws FormatError (too few points to register), InvalidInput,
+/// Cancelled.
 [[nodiscard]] PreparedScan prepare_scan(const Geometry& geometry, const RegisterOptions& options = {},
-                                        const RunContext& context = {});
+                                        std::string_view name = "scan", const RunContext& context = {});
 
 struct RegisterResult {
   RigidTransform T_target_source = RigidTransform::Identity();  ///< input frames: p_target = R p_source + t
@@ -83,7 +84,8 @@ struct RegisterResult {
 /// Finds the motion that brings the source onto the target. With `init` it starts there; without, it looks for starting
 /// poses by itself, which needs an overlap of about half or more. The result is assessed, never assumed: look at
 /// assessment.confidence before using the pose.
-/// Throws InvalidInput, Cancelled. Same result for any RunContext.
+/// Throws FormatError (a scan of fewer than 10 distinct points), InvalidInput, Cancelled. Same result for any
+/// RunContext.
 [[nodiscard]] RegisterResult register_scans(const Geometry& source, const Geometry& target,
                                             const std::optional<RigidTransform>& T_target_source_init = {},
                                             const RegisterOptions& options = {}, const RunContext& context = {});

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <span>
 #include <string>
 
 #include "shapelight/core/run_context.hpp"
@@ -43,19 +44,20 @@ struct PoseAssessment {
   double conditioning = 0.0;  ///< [1] smallest over largest eigenvalue of the scaled information; 0: undetermined
   Matrix6 covariance = Matrix6::Zero();  ///< of (turn [rad] about, slide [length] of) the target's origin
   WeakestDirection weakest;
-  double confidence = 0.0;  ///< [1] calibrated share of right poses among poses that look like this one
-  std::string doubt;        ///< what speaks most against it: "the scans overlap by 4 % only", ...; may be empty
+  double rival_weight = 0.0;  ///< [1] of the rivals beside this pose: the sum of their shares to the 6th power
+  double confidence = 0.0;    ///< [1] calibrated share of right poses among poses that look like this one
+  std::string doubt;          ///< what speaks most against it: "the scans overlap by 4 % only", ...; may be empty
 };
 
 /// Assesses a pose on the full scans: how far they overlap, how well they fit there, and whether that fit determines
 /// the pose. The gate starts at 3 % of the smaller diagonal and shrinks to six residuals as long as the residuals
 /// shrink with it: on a right pose they do, to the noise and the point spacing; on a wrong one they fill any gate
-/// evenly. `rival_share` [1]: how well the best other pose fits, of what this one does; 0 when no other was tried. The
-/// confidence was calibrated on registrations of known truth (docs/register.md), right meaning within 3 degrees and 2 %
-/// of the diagonal. Pre: both clouds have normals and 3 points or more (InvalidInput). Cost: two tree searches per
-/// point.
+/// evenly. `rivals` [1]: how well other poses fit that were tried, as shares of how well this one does.
+/// The confidence was calibrated on registrations of known truth (docs/register.md), right meaning within 3 degrees and
+/// 2 % of the diagonal.
+/// Pre: both clouds have normals and 3 points or more (InvalidInput). Cost: two tree searches per point.
 [[nodiscard]] PoseAssessment assess_pose(const RegistrationCloud& source, const RegistrationCloud& target,
-                                         const RigidTransform& T_target_source, double rival_share = 0.0,
+                                         const RigidTransform& T_target_source, std::span<const double> rivals = {},
                                          const RunContext& context = {});
 
 }  // namespace shapelight

@@ -39,8 +39,9 @@ struct SoftIcpOptions {
 /// iteration runs on until it stands still. A reconstruction: the paper names Liu's SoftICP without a reference list.
 /// Verified from the abstract of Liu, "A mean field annealing approach to accurate free form shape matching" (2007):
 /// closest-point candidates, closed-form weights, annealing, quaternion least squares. Ours: the constants, the
-/// dimensionless slack, the run to convergence. Pre: both clouds hold 10 points or more. Throws InvalidInput,
-/// Cancelled. Cost: per iteration tree searches both ways and O(n k) time and memory.
+/// dimensionless slack, the run to convergence. result.error and rms are the weighted root mean square, inlier_ratio is
+/// the sum of the weights over the number of source points. Pre: both clouds hold 10 points or more. Throws
+/// InvalidInput, Cancelled. Cost: per iteration tree searches both ways and O(n k) time and memory.
 [[nodiscard]] RegistrationResult register_by_soft_icp(const RegistrationCloud& source, const RegistrationCloud& target,
                                                       const RigidTransform& T_target_source,
                                                       const SoftIcpOptions& options = {},
