@@ -6,11 +6,11 @@
 
 #include "commands.hpp"
 #include "described_options.hpp"
+#include "matrix_json.hpp"
 #include "output_folder.hpp"
 #include "run.hpp"
 #include "shapelight/io/transform.hpp"
 #include "shapelight/pipeline/align.hpp"
-#include "transform_json.hpp"
 
 namespace shapelight::cli {
 namespace {
@@ -48,7 +48,7 @@ nlohmann::ordered_json scans_json(const AlignArguments& arguments, const std::ve
     nlohmann::ordered_json entry = {{"scan", i}, {"file", arguments.scans[i]}, {"group", scan.group}};
     entry["placed"] = scan.group == 0;
     if (scan.group == 0) entry["pose"] = poses[i];
-    entry["T_world_scan"] = transform_json(scan.T_world_scan);
+    entry["T_world_scan"] = matrix_json(scan.T_world_scan.matrix());
     entry["residual"] = scan.rms;
     entry["partners"] = scan.partners;
     scans.push_back(std::move(entry));
@@ -61,7 +61,7 @@ nlohmann::ordered_json pairs_json(const AlignResult& result) {
   for (const AlignedPair& pair : result.pairs) {
     pairs.push_back({{"source", pair.source},
                      {"target", pair.target},
-                     {"T_target_source", transform_json(pair.T_target_source)},
+                     {"T_target_source", matrix_json(pair.T_target_source.matrix())},
                      {"use", enum_name(pair.graph.use)},
                      {"confidence", pair.graph.confidence},
                      {"registration_confidence", pair.registration_confidence},

@@ -6,6 +6,7 @@
 #include "attribute_choice.hpp"
 #include "commands.hpp"
 #include "described_options.hpp"
+#include "matrix_json.hpp"
 #include "run.hpp"
 #include "shapelight/io/transform.hpp"
 #include "shapelight/pipeline/register.hpp"
@@ -22,16 +23,6 @@ struct RegisterArguments {
   AttributeChoice attributes;
   CommonOptions common;
 };
-
-nlohmann::ordered_json matrix_json(const Eigen::MatrixXd& matrix) {
-  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
-  for (Eigen::Index r = 0; r < matrix.rows(); ++r) {
-    nlohmann::ordered_json row = nlohmann::ordered_json::array();
-    for (Eigen::Index c = 0; c < matrix.cols(); ++c) row.push_back(matrix(r, c));
-    rows.push_back(std::move(row));
-  }
-  return rows;
-}
 
 nlohmann::ordered_json result_json(const RegisterResult& result) {
   const PoseAssessment& pose = result.assessment;

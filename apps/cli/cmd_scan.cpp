@@ -4,6 +4,7 @@
 
 #include "commands.hpp"
 #include "described_options.hpp"
+#include "matrix_json.hpp"
 #include "output_folder.hpp"
 #include "run.hpp"
 #include "shapelight/io/transform.hpp"
@@ -69,13 +70,6 @@ void check_arguments(const ScanArguments& arguments) {
   require("fov", arguments.field_of_view, 1, 170);
 }
 
-nlohmann::ordered_json rows_of(const RigidTransform& transform) {
-  const Eigen::Matrix4d matrix = transform.matrix();
-  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
-  for (int i = 0; i < 4; ++i) rows.push_back({matrix(i, 0), matrix(i, 1), matrix(i, 2), matrix(i, 3)});
-  return rows;
-}
-
 // Scans, writes, and says what was seen: one entry of the report.
 nlohmann::ordered_json make_scan(const TriangleTree& surface, const View& view, OutputFolder& folder, Run& run) {
   const VirtualScan scan =
@@ -89,7 +83,7 @@ nlohmann::ordered_json make_scan(const TriangleTree& surface, const View& view, 
   return {{"scan", view.scan_name},
           {"pose", view.pose_name},
           {"points", scan.geometry.size()},
-          {"T_mesh_scan", rows_of(scan.T_mesh_scan)}};
+          {"T_mesh_scan", matrix_json(scan.T_mesh_scan.matrix())}};
 }
 
 int run_scan(const ScanArguments& arguments, const DescribedFlags<VirtualScanOptions>& flags, std::stop_token stop) {

@@ -159,7 +159,7 @@ def main():
     parser.add_argument("--meshes", type=Path, nargs="*", default=[], help="more meshes to scan")
     parser.add_argument("--starts", type=int, default=20)
     parser.add_argument("--jobs", type=int, default=2, help="processes at once")
-    parser.add_argument("--quick", action="store_true", help="P of 5 and 25 % only")
+    parser.add_argument("--quick", action="store_true", help="P of 5 and 25 %% only")
     parser.add_argument("--output", type=Path, default=ROOT / "build/figure9", help="folder of cells and CSV files")
     parser.add_argument("--document", type=Path, default=ROOT / "docs/results-registration.md")
     arguments = parser.parse_args()

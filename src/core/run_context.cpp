@@ -1,5 +1,6 @@
 #include "shapelight/core/run_context.hpp"
 
+#include <cmath>
 #include <string>
 
 #include "shapelight/core/error.hpp"
@@ -12,7 +13,7 @@ RunContext RunContext::phase(double begin, double end, std::string_view name) co
   if (progress) {
     progress(begin, name);
     inner.progress = [outer = progress, begin, end, own = std::string(name)](double fraction, std::string_view inside) {
-      outer(begin + (end - begin) * fraction, inside.empty() ? std::string_view(own) : inside);
+      outer(std::lerp(begin, end, fraction), inside.empty() ? std::string_view(own) : inside);
     };
   }
   return inner;

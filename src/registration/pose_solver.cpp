@@ -134,7 +134,8 @@ PoseFit fit_poses(std::vector<RigidTransform>& T_world_scan, const std::vector<b
   constexpr double kSmallestDamping = 1e-12, kLargestDamping = 1e12;
   PairCost here = cost_at(T_world_scan);
   const std::vector<std::ptrdiff_t> block = number_blocks(T_world_scan.size(), is_fixed, here.terms);
-  const std::ptrdiff_t num_blocks = 1 + *std::max_element(block.begin(), block.end());
+  const auto num_blocks =
+      std::count_if(block.begin(), block.end(), [](std::ptrdiff_t position) { return position != kFixed; });
   PoseFit fit{here.value, 0, num_blocks == 0};
   double damping = 1e-6;
   while (fit.iterations < max_iterations && !fit.converged) {
