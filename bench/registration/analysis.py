@@ -184,7 +184,8 @@ def peer_table(runs, peers, samplers, percent):
                                                                True).values()), ".3f"),
                               number(median_of(source.per_pair(method, sampler, percent, "cpu_ms").values()), ".1f"),
                               number(prepare, ".1f")])
-    return markdown_table(["method", "sampler", "success", "rotation error [deg]", "CPU ms", "preparing, CPU ms"], lines)
+    heads = ["method", "sampler", "success", "rotation error [deg]", "CPU ms", "preparing, CPU ms"]
+    return markdown_table(heads, lines)
 
 
 def verdict(r, wanted="below"):
@@ -236,8 +237,8 @@ def claims(runs, samplings):
              for rows in cell.values() for r in rows]
     if limit:
         share = float(np.mean(limit))
-        add("SoftICP sometimes oscillates (share of its runs that still move at the iteration limit)", f"{100 * share:.1f} %",
-            "holds" if share > 0.01 else "does not hold")
+        add("SoftICP sometimes oscillates (share of its runs that still move at the iteration limit)",
+            f"{100 * share:.1f} %", "holds" if share > 0.01 else "does not hold")
     shares = {s: [float(row["mutual"]) for row in samplings
                   if row["sampler"] == s and float(row["percent"]) == 5.0] for s in (SBS, PAPER_SBS, SPS)}
     if all(shares.values()):
