@@ -18,13 +18,13 @@ constexpr int kPolishSteps = 10;
 constexpr double kPolishGate = 4.0;           // of the full target's spacings, at least
 constexpr std::size_t kFinishPoints = 20000;  // of the source polish the best pose once more
 
-RegistrationResult run_method(const PreparedScan& source, const PreparedScan& target, const RigidTransform& start,
+RegistrationResult run_method(const PreparedScan& source, const PreparedScan& target, const StartingPose& start,
                               const RegisterOptions& options, const RunContext& context) {
   const auto by_icp = [&](IcpMetric metric) {
     IcpOptions icp;
     icp.metric = metric;
     icp.max_distance = options.max_distance;
-    return register_by_icp(source.samples, target.samples, start, icp, context);
+    return register_by_icp(source.samples, target.samples, start.T_target_source, icp, context);
   };
   FicpOptions ficp;
   switch (options.method) {
@@ -35,14 +35,15 @@ RegistrationResult run_method(const PreparedScan& source, const PreparedScan& ta
     case RegistrationMethod::Gicp:
       return by_icp(IcpMetric::Gicp);
     case RegistrationMethod::SoftIcp:
-      return register_by_soft_icp(source.samples, target.samples, start, {}, context);
+      return register_by_soft_icp(source.samples, target.samples, start.T_target_source, {}, context);
     case RegistrationMethod::FicpPure:
       ficp.start_lambda = ficp.lambda;
       break;
     case RegistrationMethod::Ficp:
+      if (start.is_close) ficp.start_lambda = ficp.lambda;
       break;
   }
-  return register_by_ficp(source.samples, target.samples, start, ficp, context);
+  return register_by_ficp(source.samples, target.samples, start.T_target_source, ficp, context);
 }
 
 // A few steps of some points of the source against the full surface of the target, which its samples only hint at.
@@ -81,7 +82,7 @@ struct Attempt {
   double fit = 0.0;
 };
 
-Attempt attempt_from(const PreparedScan& source, const PreparedScan& target, const RigidTransform& start,
+Attempt attempt_from(const PreparedScan& source, const PreparedScan& target, const StartingPose& start,
                      const RegisterOptions& options, const RunContext& context) {
   Attempt attempt;
   attempt.registration = run_method(source, target, start, options, context.phase(0.0, 0.7, "register"));
@@ -94,7 +95,7 @@ Attempt attempt_from(const PreparedScan& source, const PreparedScan& target, con
   return attempt;
 }
 
-void attempt_all(const PreparedScan& source, const PreparedScan& target, std::span<const RigidTransform> starts,
+void attempt_all(const PreparedScan& source, const PreparedScan& target, std::span<const StartingPose> starts,
                  const RegisterOptions& options, std::vector<Attempt>& attempts, const RunContext& context) {
   for (std::size_t i = 0; i < starts.size(); ++i) {
     const auto fraction = [&](std::size_t done) {
@@ -107,12 +108,15 @@ void attempt_all(const PreparedScan& source, const PreparedScan& target, std::sp
 }
 
 // The best attempt first; then what the best would be were the source turned to look like itself again.
-std::vector<Attempt> attempts_from(const PreparedScan& source, const PreparedScan& target, StartingPoses starts,
+std::vector<Attempt> attempts_from(const PreparedScan& source, const PreparedScan& target, const StartingPoses& starts,
                                    const RegisterOptions& options, const RunContext& context) {
   std::vector<Attempt> attempts;
-  attempt_all(source, target, starts.T_target_source, options, attempts, context.phase(0.0, 0.7, "register"));
-  for (RigidTransform& start : starts.T_source_source) start = attempts.front().T_target_source * start;
-  attempt_all(source, target, starts.T_source_source, options, attempts, context.phase(0.7, 1.0, "look for rivals"));
+  attempt_all(source, target, starts.poses, options, attempts, context.phase(0.0, 0.7, "register"));
+  std::vector<StartingPose> rivals;
+  for (const RigidTransform& T_source_source : starts.T_source_source) {
+    rivals.push_back({attempts.front().T_target_source * T_source_source, true});
+  }
+  attempt_all(source, target, rivals, options, attempts, context.phase(0.7, 1.0, "look for rivals"));
   return attempts;
 }
 
@@ -158,10 +162,10 @@ RegisterResult register_scans(const PreparedScan& source, const PreparedScan& ta
     starts = find_starting_poses(source, target, context.phase(0.0, 0.4, "find starting poses"));
   } else {
     const RigidTransform init = T_target_source_init.value_or(RigidTransform::Identity());
-    starts.T_target_source.push_back(to_origins(init, source, target));
+    starts.poses.push_back({to_origins(init, source, target), false});
   }
   std::vector<Attempt> attempts =
-      attempts_from(source, target, std::move(starts), options, context.phase(search ? 0.4 : 0.0, 0.8, "register"));
+      attempts_from(source, target, starts, options, context.phase(search ? 0.4 : 0.0, 0.8, "register"));
 
   RegisterResult result;
   Attempt& best = attempts.front();

@@ -49,11 +49,11 @@ StartingPoses find_starting_poses(const PreparedScan& source, const PreparedScan
   StartingPoses starts;
   for (const PoseHypothesis& hypothesis : align_coarsely(described_source, described_target, {.same_side = same_side},
                                                          context.phase(0.8, 0.9, "match keypoints"))) {
-    starts.T_target_source.push_back(hypothesis.T_target_source);
+    starts.poses.push_back({hypothesis.T_target_source, true});
   }
   RigidTransform in_place = RigidTransform::Identity();
   in_place.translation() = source.origin - target.origin;
-  starts.T_target_source.push_back(in_place);
+  starts.poses.push_back({in_place, false});
   starts.T_source_source =
       self_similarities(described_source, source.full.diagonal, context.phase(0.9, 1.0, "match keypoints"));
   return starts;

@@ -7,10 +7,18 @@
 
 namespace shapelight {
 
-/// Where to look for a pose when none is known. Between the scans' origins.
+/// Between the scans' origins.
+struct StartingPose {
+  RigidTransform T_target_source = RigidTransform::Identity();
+  /// From descriptors, good to a degree or two: FICP is not annealed from here, which would cost it scans that overlap
+  /// by half only.
+  bool is_close = false;
+};
+
+/// Where to look for a pose when none is known.
 struct StartingPoses {
   /// Of the coarse alignment, best supported first, and that of the files, since many scans come roughly in place.
-  std::vector<RigidTransform> T_target_source;
+  std::vector<StartingPose> poses;
   /// Motions after which the source looks much like itself, as a cube does: every pose has a rival for each of them.
   std::vector<RigidTransform> T_source_source;
 };
