@@ -31,7 +31,7 @@ enum class RegistrationMethod : std::uint8_t { Ficp, FicpPure, SoftIcp, Icp, Pla
 
 /// What register_scans() does.
 struct RegisterOptions {
-  RegistrationMethod method = RegistrationMethod::Gicp;  ///< the surest and fastest in docs/results-registration.md
+  RegistrationMethod method = RegistrationMethod::Ficp;
   SamplingMethod sampler = SamplingMethod::Shape;
   double ratio = 0.0;         ///< [1] share of each scan's points that is registered; 0: 2000 to 10000 points
   bool skip_boundary = true;  ///< choose no points on the border of a scan: they have no counterpart
