@@ -52,9 +52,9 @@ TEST(RegisterCommand, StartsFromInitAndSearchesNothingThen) {
 
 TEST(RegisterCommand, SharesAndLengthsMayBeGivenInPercent) {
   const Workplace work;
-  const Outcome done = work.run({"register", kSource, kTarget, "--init", data("scans/T_dragonStandRight_24_to_0.txt"),
-                                 "--method", "gicp", "--sampler", "random", "--ratio", "10%", "--max-distance", "5%",
-                                 "--json", "-", "-q"});
+  const Outcome done =
+      work.run({"register", kSource, kTarget, "--init", data("scans/T_dragonStandRight_24_to_0.txt"), "--method",
+                "gicp", "--sampler", "random", "--ratio", "10%", "--max-distance", "5%", "--json", "-", "-q"});
   ASSERT_EQ(done.code, 0) << done.err;
   const nlohmann::json report = done.json();
   EXPECT_EQ(report["result"]["source_samples"], 3483) << "of 34,833 that are no strays";

@@ -147,8 +147,8 @@ TEST(Register, DoubtsCollinearAndPlanarPoints) {
 class EverySampler : public ::testing::TestWithParam<SamplingMethod> {};
 INSTANTIATE_TEST_SUITE_P(Register, EverySampler,
                          ::testing::Values(SamplingMethod::Shape, SamplingMethod::Random, SamplingMethod::Voxel,
-                                           SamplingMethod::Stratified, SamplingMethod::Farthest, SamplingMethod::Poisson,
-                                           SamplingMethod::Normal, SamplingMethod::Covariance),
+                                           SamplingMethod::Stratified, SamplingMethod::Farthest,
+                                           SamplingMethod::Poisson, SamplingMethod::Normal, SamplingMethod::Covariance),
                          [](const auto& param) { return std::string(enum_name(param.param)); });
 
 TEST_P(EverySampler, ThinsBothScansToTheShareAskedFor) {

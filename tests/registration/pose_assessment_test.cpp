@@ -86,7 +86,8 @@ TEST(PoseAssessment, NamesWhatTheSurfaceDoesNotDetermine) {
   EXPECT_GT(assess_pose(saddle, saddle, here).conditioning, 1e-3);
 }
 
-// The covariance about the target's origin, moved to the middle of the overlap, has the weakest direction's uncertainty.
+// The covariance about the target's origin, moved to the middle of the overlap, has the weakest direction's
+// uncertainty.
 TEST(PoseAssessment, CovarianceIsThatOfAMotionAboutTheOrigin) {
   const testing::Shape noisy = testing::with_noise(testing::saddle(40, 0.05), 1e-3);
   const testing::Shape exact = testing::saddle(40, 0.05);

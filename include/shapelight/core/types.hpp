@@ -18,6 +18,6 @@ inline constexpr Index kNoIndex = std::numeric_limits<Index>::max();
 inline constexpr std::uint64_t kMaxPoints = kNoIndex - 1;
 
 using RigidTransform = Eigen::Isometry3d;  ///< x -> R x + t; named by its frames: p_a = T_a_b p_b
-using Triangle = std::array<Index, 3>;  ///< vertex indices, counter-clockwise seen from outside
+using Triangle = std::array<Index, 3>;     ///< vertex indices, counter-clockwise seen from outside
 
 }  // namespace shapelight
