@@ -54,6 +54,17 @@ TEST(PoseAssessment, ReciprocalErrorOfLiftedPlanes) {
   EXPECT_NEAR(pose.reciprocal.std, 0.0, 1e-8);
 }
 
+// The second source point is nearest to the first target point, which has a nearer one.
+TEST(PoseAssessment, CorrespondencesAreReciprocal) {
+  const Vec3 up(0, 0, 1);
+  const RegistrationCloud source({{0, 0, 0}, {0.2, 0, 0}, {1, 0, 0}, {2, 1, 0}}, {up, up, up, up});
+  const RegistrationCloud target({{0, 0, 0}, {1, 0, 0}, {2, 1, 0}}, {up, up, up});
+  const PoseAssessment pose = assess_pose(source, target, RigidTransform::Identity());
+  EXPECT_EQ(pose.reciprocal.pairs, 3u);
+  EXPECT_DOUBLE_EQ(pose.reciprocal.share, 0.75);
+  EXPECT_DOUBLE_EQ(pose.reciprocal.mean, 0.0);
+}
+
 // A plane slides along itself and turns about its normal; a sphere turns about anything; a cylinder does both about its
 // axis. Two of them as one rigid body hold each other.
 TEST(PoseAssessment, NamesWhatTheSurfaceDoesNotDetermine) {
@@ -100,6 +111,12 @@ TEST(PoseAssessment, CovarianceIsThatOfAMotionAboutTheOrigin) {
   EXPECT_GT(far.covariance(4, 4), 100.0 * near.covariance(4, 4));
   // ... but the turn alone is as certain as before.
   EXPECT_NEAR(far.covariance(0, 0), near.covariance(0, 0), 1e-6 * near.covariance(0, 0));
+  // About the other origin a turn w takes along a slide of away x w.
+  Matrix6 carried = Matrix6::Identity();
+  carried(4, 2) = -100.0;
+  carried(5, 1) = 100.0;
+  const Matrix6 expected = carried * near.covariance * carried.transpose();
+  EXPECT_LT((far.covariance - expected).cwiseAbs().maxCoeff(), 1e-6 * expected.cwiseAbs().maxCoeff());
   EXPECT_NEAR(far.weakest.uncertainty, near.weakest.uncertainty, 1e-6 * near.weakest.uncertainty);
 }
 
