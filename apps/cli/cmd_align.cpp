@@ -186,7 +186,7 @@ int run_align(const AlignArguments& arguments, const DescribedFlags<AlignOptions
   const std::vector<Geometry> scans = read_scans(arguments, run);
   outputs.check();
   flags.apply(options, bounding_box(scans.front().positions).diagonal());
-  const AlignResult result = run.timed("align", [&] { return align_scans(scans, options, run.context()); });
+  const AlignResult result = run.timed("align", [&] { return align_scans(views_of(scans), options, run.context()); });
 
   for (const std::string& warning : result.warnings) run.warn(warning);
   set_report(run, arguments, options, outputs, result);

@@ -26,11 +26,11 @@ int run_fields(const FieldsArguments& arguments, const DescribedFlags<FieldsOpti
   Geometry geometry = run.read(arguments.input);
   run.check_output(arguments.output);
   run.check_memory(geometry.size() * kBytesPerPoint);
-  const FieldsResult result =
-      run.timed("fields", [&] { return add_fields(std::move(geometry), options, run.context()); });
+  PointFields result = run.timed("fields", [&] { return point_fields(geometry, options, run.context()); });
   run.warn(result.diagnostics);
-  run.write(arguments.output, result.geometry);
-  run.points_in = run.points_out = result.geometry.size();
+  geometry.attributes.set(std::move(result.attributes));
+  run.write(arguments.output, geometry);
+  run.points_in = run.points_out = geometry.size();
   run.options = options_json(options);
   run.options["preset"] = arguments.preset;
   const double h = result.mean_edge_length;
@@ -43,7 +43,7 @@ int run_fields(const FieldsArguments& arguments, const DescribedFlags<FieldsOpti
                 {"boundary", result.diagnostics.boundary_vertices},
                 {"components", result.diagnostics.components}};
   run.say(fmt::format("{}: fields of {} points, {} segments, noise {:.3g} ({:.2g} of the mean edge)", arguments.output,
-                      result.geometry.size(), result.num_segments, result.noise, h > 0.0 ? result.noise / h : 0.0));
+                      geometry.size(), result.num_segments, result.noise, h > 0.0 ? result.noise / h : 0.0));
   run.finish();
   return 0;
 }

@@ -10,7 +10,7 @@ Command add_formats_command(CLI::App& app) {
   return {command, [](std::stop_token) {
             for (const FormatInfo& format : supported_formats()) {
               std::string extensions;
-              for (const std::string_view e : format.extensions) extensions += fmt::format("{} ", e);
+              for (const std::string& e : format.extensions) extensions += fmt::format("{} ", e);
               fmt::print("{:<28}{:<6}{:<7}{}\n", extensions, format.can_read ? "read" : "-",
                          format.can_write ? "write" : "-", format.description);
             }

@@ -1,24 +1,14 @@
-#include <fmt/format.h>
 #include <signal.h>
 
-#include <CLI/CLI.hpp>
 #include <atomic>
 #include <cstdlib>
-#include <exception>
-#include <new>
 #include <stop_token>
 #include <thread>
-#include <vector>
 
-#include "commands.hpp"
-#include "shapelight/core/error.hpp"
+#include "command_line.hpp"
 
-namespace shapelight::cli {
 namespace {
 
-constexpr int kInternalError = 1;
-constexpr int kBadUsage = 2;
-constexpr int kMemoryExceeded = 7;
 constexpr int kInterrupted = 130;
 constexpr int kTerminated = 143;
 
@@ -42,48 +32,11 @@ void watch_signals(std::stop_source& stop) {
   }).detach();
 }
 
-int fail(int code, const std::string& message) {
-  fmt::print(stderr, "shapelight: {}\n", message);
-  return code;
-}
-
-int run(const Work& work, std::stop_token stop) {
-  try {
-    return work(std::move(stop));
-  } catch (const Cancelled&) {
-    return fail(received_signal == SIGTERM ? kTerminated : kInterrupted, "stopped, nothing was written");
-  } catch (const Error& error) {
-    return fail(error.exit_code(), error.what());
-  } catch (const std::bad_alloc&) {
-    return fail(kMemoryExceeded, "out of memory");
-  } catch (const std::exception& error) {
-    return fail(kInternalError, fmt::format("internal error, please report: {}", error.what()));
-  }
-}
+}  // namespace
 
 int main(int argc, char** argv) {
   static std::stop_source stop;  // outlives the thread that watches signals
   watch_signals(stop);
-  CLI::App app("shapelight keeps the points that carry a shape.", "shapelight");
-  app.set_version_flag("--version", std::string("shapelight ") + SHAPELIGHT_VERSION);
-  app.require_subcommand(1);
-  app.get_formatter()->column_width(42);
-  const std::vector<Command> commands = {add_sample_command(app),   add_fields_command(app), add_simplify_command(app),
-                                         add_register_command(app), add_align_command(app),  add_metrics_command(app),
-                                         add_render_command(app),   add_scan_command(app),   add_info_command(app),
-                                         add_convert_command(app),  add_formats_command(app)};
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return error.get_exit_code() == 0 ? app.exit(error) : (app.exit(error), kBadUsage);
-  }
-  for (const Command& command : commands) {
-    if (command.app->parsed()) return run(command.work, stop.get_token());
-  }
-  return kBadUsage;
+  const int code = shapelight::cli::run_command_line(argc, argv, stop.get_token());
+  return code == kInterrupted && received_signal == SIGTERM ? kTerminated : code;
 }
-
-}  // namespace
-}  // namespace shapelight::cli
-
-int main(int argc, char** argv) { return shapelight::cli::main(argc, argv); }

@@ -79,6 +79,10 @@ void AttributeTable::set(Column column) {
   }
 }
 
+void AttributeTable::set(AttributeTable columns) {
+  for (Column& column : columns.columns_) set(std::move(column));
+}
+
 bool AttributeTable::remove(std::string_view name) {
   return std::erase_if(columns_, [&](const Column& c) { return c.name == name; }) > 0;
 }

@@ -49,22 +49,41 @@ std::string_view geometry_kind_name(GeometryKind kind) {
   return "cloud";
 }
 
-GeometryKind Geometry::kind() const {
+GeometryKind Geometry::kind() const { return GeometryView(*this).kind(); }
+
+GeometryView::GeometryView(const Geometry& geometry)
+    : positions(geometry.positions),
+      triangles(geometry.triangles),
+      grid(geometry.grid ? &*geometry.grid : nullptr),
+      viewpoint(geometry.viewpoint),
+      whole(&geometry) {}
+
+GeometryKind GeometryView::kind() const {
   if (!triangles.empty()) return GeometryKind::Mesh;
-  return grid ? GeometryKind::RangeImage : GeometryKind::Cloud;
+  return grid != nullptr ? GeometryKind::RangeImage : GeometryKind::Cloud;
 }
 
-Geometry select_points(const Geometry& geometry, std::span<const Index> indices) {
+const Geometry& GeometryView::rest() const {
+  static const Geometry none;
+  return whole != nullptr ? *whole : none;
+}
+
+std::vector<GeometryView> views_of(std::span<const Geometry> geometries) {
+  return {geometries.begin(), geometries.end()};
+}
+
+Geometry select_points(const GeometryView& geometry, std::span<const Index> indices) {
   Geometry chosen;
   chosen.positions.resize(indices.size());
   std::transform(indices.begin(), indices.end(), chosen.positions.begin(),
                  [&](Index i) { return geometry.positions[i]; });
-  chosen.coordinate_type = geometry.coordinate_type;
-  chosen.attributes = geometry.attributes.gather(indices);
   chosen.viewpoint = geometry.viewpoint;
-  chosen.comments = geometry.comments;
-  chosen.las = geometry.las;
-  chosen.format = geometry.format;
+  const Geometry& rest = geometry.rest();
+  chosen.coordinate_type = rest.coordinate_type;
+  chosen.attributes = rest.attributes.gather(indices);
+  chosen.comments = rest.comments;
+  chosen.las = rest.las;
+  chosen.format = rest.format;
   return chosen;
 }
 

@@ -103,7 +103,7 @@ BuiltGraph graph_from_range_image(std::span<const Vec3> positions, const RangeGr
   return built;
 }
 
-BuiltGraph build_graph(const Geometry& geometry, const GraphOptions& options, const RunContext& context) {
+BuiltGraph build_graph(const GeometryView& geometry, const GraphOptions& options, const RunContext& context) {
   switch (geometry.kind()) {
     case GeometryKind::Mesh:
       return graph_from_mesh(geometry.positions, geometry.triangles, context);

@@ -12,37 +12,46 @@
 namespace shapelight {
 namespace {
 
-using Reader = Geometry (*)(const io::Source&);
-using Writer = io::DroppedAttributes (*)(io::OutputFile&, const Geometry&, const WriteOptions&);
+using Reader = std::function<Geometry(const io::Source&)>;
+using Writer = std::function<io::DroppedAttributes(io::OutputFile&, const Geometry&, const WriteOptions&,
+                                                   const RunContext&)>;
 
 struct Format {
-  std::string_view name;
-  std::vector<std::string_view> extensions;
-  std::string_view description;
+  std::string name;
+  std::vector<std::string> extensions;
+  std::string description;
   Reader read;
   Writer write;
 };
 
+// A writer that is too quick to ask for a stop.
+Writer quick(io::DroppedAttributes (*write)(io::OutputFile&, const Geometry&, const WriteOptions&)) {
+  return [write](io::OutputFile& out, const Geometry& geometry, const WriteOptions& options, const RunContext&) {
+    return write(out, geometry, options);
+  };
+}
+
 // In the order in which they are listed to people.
-const std::vector<Format>& formats() {
-  static const std::vector<Format> table = {
-      {"ply", {".ply"}, "Polygon File Format: meshes, clouds and Stanford range images", io::read_ply, io::write_ply},
-      {"obj", {".obj"}, "Wavefront OBJ meshes", io::read_obj, io::write_obj},
-      {"stl", {".stl"}, "Stereolithography meshes", io::read_stl, io::write_stl},
-      {"off", {".off"}, "Object File Format meshes", io::read_off, io::write_off},
-      {"pcd", {".pcd"}, "Point Cloud Library clouds and organised clouds", io::read_pcd, io::write_pcd},
+std::vector<Format>& formats() {
+  static std::vector<Format> table = {
+      {"ply", {".ply"}, "Polygon File Format: meshes, clouds and Stanford range images", io::read_ply,
+       quick(io::write_ply)},
+      {"obj", {".obj"}, "Wavefront OBJ meshes", io::read_obj, quick(io::write_obj)},
+      {"stl", {".stl"}, "Stereolithography meshes", io::read_stl, quick(io::write_stl)},
+      {"off", {".off"}, "Object File Format meshes", io::read_off, quick(io::write_off)},
+      {"pcd", {".pcd"}, "Point Cloud Library clouds and organised clouds", io::read_pcd, quick(io::write_pcd)},
       {"xyz",
        {".xyz", ".txt", ".csv", ".pts", ".asc"},
        "clouds as text, one point per line",
        io::read_xyz,
-       io::write_xyz},
-      {"ptx", {".ptx"}, "terrestrial laser scans as text", io::read_ptx, nullptr},
-      {"las", {".las"}, "ASPRS laser clouds, versions 1.0 to 1.4", io::read_las, io::write_las},
-      {"png", {".png"}, "16-bit depth images with camera intrinsics", io::read_depth_png, nullptr},
-      {"osu", {".abs"}, "Ohio State University range images as text", io::read_osu, nullptr},
-      {"rif", {".rif"}, "RIF range images as text", io::read_rif, nullptr},
-      {"laz", {".laz"}, "compressed LAS and COPC (.copc.laz), read by the Python package", nullptr, nullptr},
-      {"e57", {".e57"}, "ASTM E57 scans, read by the Python package", nullptr, nullptr},
+       quick(io::write_xyz)},
+      {"ptx", {".ptx"}, "terrestrial laser scans as text", io::read_ptx, {}},
+      {"las", {".las"}, "ASPRS laser clouds, versions 1.0 to 1.4", io::read_las, quick(io::write_las)},
+      {"png", {".png"}, "16-bit depth images with camera intrinsics", io::read_depth_png, {}},
+      {"osu", {".abs"}, "Ohio State University range images as text", io::read_osu, {}},
+      {"rif", {".rif"}, "RIF range images as text", io::read_rif, {}},
+      {"laz", {".laz"}, "compressed LAS and COPC (.copc.laz), by the Python package: pip install shapelight[las]", {}, {}},
+      {"e57", {".e57"}, "ASTM E57 scans, by the Python package: pip install shapelight[e57]", {}, {}},
   };
   return table;
 }
@@ -63,8 +72,8 @@ template <class Member>
 std::string names_of(Member Format::*function) {
   std::string names;
   for (const Format& format : formats()) {
-    if (format.*function == nullptr) continue;
-    for (const std::string_view extension : format.extensions)
+    if (!(format.*function)) continue;
+    for (const std::string& extension : format.extensions)
       names += fmt::format("{}{}", names.empty() ? "" : " ", extension);
   }
   return names;
@@ -80,20 +89,45 @@ void check_contents(const Geometry& geometry, const Format& format, const std::f
 
 }  // namespace
 
-std::span<const FormatInfo> supported_formats() {
-  static const std::vector<FormatInfo> infos = [] {
-    std::vector<FormatInfo> list;
-    for (const Format& f : formats()) {
-      list.push_back({f.name, f.extensions, f.description, f.read != nullptr, f.write != nullptr});
+std::vector<FormatInfo> supported_formats() {
+  std::vector<FormatInfo> list;
+  for (const Format& f : formats()) {
+    list.push_back({f.name, f.extensions, f.description, f.read != nullptr, f.write != nullptr});
+  }
+  return list;
+}
+
+void register_format(FormatPlugin plugin) {
+  for (const std::string& extension : plugin.extensions) {
+    const Format* owner = find_format("x" + extension);
+    if (owner != nullptr && owner->name != plugin.name) {
+      throw InvalidInput(fmt::format("format {}: {} belongs to {} already", plugin.name, extension, owner->name));
     }
-    return list;
-  }();
-  return infos;
+  }
+  Format format{plugin.name, plugin.extensions, plugin.description, {}, {}};
+  if (plugin.read) {
+    format.read = [read = std::move(plugin.read)](const io::Source& source) {
+      return read(source.path, source.options, source.context);
+    };
+  }
+  if (plugin.write) {
+    format.write = [write = std::move(plugin.write)](io::OutputFile& out, const Geometry& geometry,
+                                                     const WriteOptions& options, const RunContext& context) {
+      return write(out.temporary(), geometry, options, context);
+    };
+  }
+  std::vector<Format>& known = formats();
+  const auto same = std::find_if(known.begin(), known.end(), [&](const Format& f) { return f.name == format.name; });
+  if (same != known.end()) {
+    *same = std::move(format);
+  } else {
+    known.push_back(std::move(format));
+  }
 }
 
 void check_writable_format(const std::filesystem::path& path) {
   const Format* format = find_format(path);
-  if (format == nullptr || format->write == nullptr) {
+  if (format == nullptr || !format->write) {
     throw InvalidInput(
         fmt::format("{}: cannot write this format, expected one of {}", path.string(), names_of(&Format::write)));
   }
@@ -106,10 +140,9 @@ Geometry read_geometry(const std::filesystem::path& path, const ReadOptions& opt
     throw FormatError(fmt::format("{}: unknown extension '{}', expected one of {}", path.string(),
                                   path.extension().string(), names_of(&Format::read)));
   }
-  if (format->read == nullptr) {
-    throw FormatError(fmt::format(
-        "{}: {} files are read by the Python package, whose shapelight command takes them: pip install shapelight[{}]",
-        path.string(), format->name, format->name == "laz" ? "las" : format->name));
+  if (!format->read) {
+    throw FormatError(fmt::format("{}: {} files cannot be read here ({})", path.string(), format->name,
+                                  format->description));
   }
   context.check();
   Geometry geometry = format->read({file, path, options, context});
@@ -123,7 +156,7 @@ std::vector<std::string> write_geometry(const std::filesystem::path& path, const
   check_writable_format(path);
   const Format* format = find_format(path);
   io::OutputFile out(path, options.overwrite);
-  std::vector<std::string> dropped = format->write(out, geometry, options);
+  std::vector<std::string> dropped = format->write(out, geometry, options, context);
   context.check();
   out.commit();
   return dropped;

@@ -21,6 +21,8 @@ class OutputFile {
   void write(const void* data, std::size_t size);
   void write(std::string_view text) { write(text.data(), text.size()); }
   void commit();
+  /// Where it writes until then.
+  [[nodiscard]] const std::filesystem::path& temporary() const { return temporary_; }
 
  private:
   [[noreturn]] void fail(const std::string& what) const;

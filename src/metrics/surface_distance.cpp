@@ -29,8 +29,11 @@ struct Surface {
   std::vector<Index> vertices;  // those of a triangle
 };
 
-Surface prepare(const TriangleMesh& original, const Vec3& origin, std::string_view name, const RunContext& context) {
-  Surface surface{original, {}, {}};
+Surface prepare(const MeshView& original, const Vec3& origin, std::string_view name, const RunContext& context) {
+  Surface surface{{{original.positions.begin(), original.positions.end()},
+                   {original.triangles.begin(), original.triangles.end()}},
+                  {},
+                  {}};
   for (Vec3& p : surface.mesh.positions) p -= origin;
   try {
     surface.tree = TriangleTree(surface.mesh, context);
@@ -128,7 +131,7 @@ NormalDeviation summarize(std::vector<float>& angles) {
 
 }  // namespace
 
-SurfaceDistance measure_surface_distance(const TriangleMesh& reference, const TriangleMesh& test,
+SurfaceDistance measure_surface_distance(const MeshView& reference, const MeshView& test,
                                          const SurfaceDistanceOptions& options, const RunContext& context) {
   validate_options(options);
   const BoundingBox box = bounding_box(reference.positions);
@@ -158,7 +161,7 @@ SurfaceDistance measure_surface_distance(const TriangleMesh& reference, const Tr
   return result;
 }
 
-std::vector<double> vertex_distances(const TriangleMesh& mesh, const TriangleTree& surface, const RunContext& context) {
+std::vector<double> vertex_distances(const MeshView& mesh, const TriangleTree& surface, const RunContext& context) {
   std::vector<double> distances(mesh.positions.size());
   parallel::for_chunks(context, distances.size(), [&](std::size_t begin, std::size_t end) {
     Index near = kNoIndex;

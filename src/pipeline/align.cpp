@@ -50,7 +50,7 @@ Matrix6 realistic(const Matrix6& covariance, const RegistrationCloud& target, co
 
 class Alignment {
  public:
-  Alignment(std::span<const Geometry> scans, const AlignOptions& options, const RunContext& context)
+  Alignment(std::span<const GeometryView> scans, const AlignOptions& options, const RunContext& context)
       : options_(options), context_(context) {
     prepare(scans, context.phase(0.0, 0.2, "prepare scans"));
   }
@@ -73,7 +73,7 @@ class Alignment {
   }
 
  private:
-  void prepare(std::span<const Geometry> scans, const RunContext& context);
+  void prepare(std::span<const GeometryView> scans, const RunContext& context);
   [[nodiscard]] std::vector<ScanIds> all_pairs() const;
   [[nodiscard]] std::vector<ScanIds> neighbours() const;
   [[nodiscard]] std::vector<ScanIds> lost_and_placed() const;
@@ -109,7 +109,7 @@ class Alignment {
   std::vector<std::string> warnings_;
 };
 
-void Alignment::prepare(std::span<const Geometry> scans, const RunContext& context) {
+void Alignment::prepare(std::span<const GeometryView> scans, const RunContext& context) {
   scans_.reserve(scans.size());
   for (std::size_t i = 0; i < scans.size(); ++i) {
     const double share = 1.0 / static_cast<double>(scans.size());
@@ -318,7 +318,7 @@ void Alignment::add_pairs(AlignResult& result) const {
 
 }  // namespace
 
-AlignResult align_scans(std::span<const Geometry> scans, const AlignOptions& options, const RunContext& context) {
+AlignResult align_scans(std::span<const GeometryView> scans, const AlignOptions& options, const RunContext& context) {
   validate_options(options);
   if (scans.size() < 2) throw InvalidInput(fmt::format("align: {} scans, expected two or more", scans.size()));
   return Alignment(scans, options, context).run();

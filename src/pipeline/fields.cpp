@@ -120,11 +120,11 @@ SurfaceFields compute_fields(const SurfaceGraph& graph, GeometryKind kind, const
   return fields;
 }
 
-FieldsResult add_fields(Geometry geometry, const FieldsOptions& options, const RunContext& context) {
+PointFields point_fields(const GeometryView& geometry, const FieldsOptions& options, const RunContext& context) {
   const BuiltGraph built = build_graph(geometry, options.graph, context.phase(0.0, 0.3, "build graph"));
   const SurfaceFields fields =
       compute_fields(built.graph, geometry.kind(), options, context.phase(0.3, 0.98, "compute fields"));
-  FieldsResult result;
+  PointFields result;
   result.noise = fields.noise;
   result.mean_edge_length = built.graph.mean_edge_length;
   result.denoised = fields.denoised;
@@ -134,7 +134,7 @@ FieldsResult add_fields(Geometry geometry, const FieldsOptions& options, const R
 
   constexpr float kMissing = std::numeric_limits<float>::quiet_NaN();
   const auto add = [&](const char* name, const std::vector<double>& values) {
-    geometry.attributes.set(spread(built.graph, values, name, kMissing));
+    result.attributes.set(spread(built.graph, values, name, kMissing));
   };
   add("shape_index", fields.shape_index);
   add("curvedness", fields.curvedness);
@@ -142,9 +142,8 @@ FieldsResult add_fields(Geometry geometry, const FieldsOptions& options, const R
     add("illumination", fields.illumination);
     add("reflectance", fields.reflectance);
   }
-  if (options.segment) geometry.attributes.set(spread_labels(built.graph, fields.segment));
+  if (options.segment) result.attributes.set(spread_labels(built.graph, fields.segment));
   add("importance", fields.importance);
-  result.geometry = std::move(geometry);
   context.check();
   context.report(1.0, "done");
   return result;

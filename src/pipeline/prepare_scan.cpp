@@ -97,7 +97,7 @@ RegistrationCloud subset(const Places& places, std::span<const Index> chosen, co
 
 }  // namespace
 
-PreparedScan prepare_scan(const Geometry& geometry, const RegisterOptions& options, std::string_view name,
+PreparedScan prepare_scan(const GeometryView& geometry, const RegisterOptions& options, std::string_view name,
                           const RunContext& context) {
   validate_options(options);
   BuiltGraph built = build_graph(geometry, {}, context.phase(0.0, 0.25, "build graph"));

@@ -188,7 +188,7 @@ RegisterResult register_scans(const PreparedScan& source, const PreparedScan& ta
   return result;
 }
 
-RegisterResult register_scans(const Geometry& source, const Geometry& target,
+RegisterResult register_scans(const GeometryView& source, const GeometryView& target,
                               const std::optional<RigidTransform>& T_target_source_init, const RegisterOptions& options,
                               const RunContext& context) {
   RegisterOptions preparing = options;

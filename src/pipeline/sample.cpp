@@ -153,7 +153,7 @@ SampleResult sample_graph(const BuiltGraph& built, GeometryKind kind, const Samp
   return result;
 }
 
-SampleResult sample(const Geometry& geometry, const SampleSize& size, const SampleOptions& options,
+SampleResult sample(const GeometryView& geometry, const SampleSize& size, const SampleOptions& options,
                     const RunContext& context) {
   validate(size);
   validate_options(options);

@@ -26,12 +26,12 @@ constexpr double kFirstGuess = 0.1;  // share of the vertices at which the searc
 // One input surface, simplified to one target after another.
 class Simplifier {
  public:
-  Simplifier(const Geometry& geometry, const SimplifyOptions& options, const RunContext& context)
+  Simplifier(const GeometryView& geometry, const SimplifyOptions& options, const RunContext& context)
       : geometry_(geometry), options_(options), surface_(pipeline::make_surface(geometry, options.fields.graph)) {
     const RunContext prepare = context.phase(0.0, 0.3, "prepare");
     reference_ = without_oddities(surface_.mesh, oddities_, prepare);
     if (reference_.mesh.triangles.empty()) throw InvalidInput("the input has no usable face to simplify");
-    features_ = pipeline::texture_seams(geometry, surface_);
+    features_ = pipeline::texture_seams(geometry.rest(), surface_);
     if (options.method != SimplifyMethod::Qslim)
       guide_.emplace(geometry, surface_, options, context.phase(0.3, 1.0, ""));
   }
@@ -75,7 +75,7 @@ class Simplifier {
     return simplify_ssim(surface_.mesh, target, {samples, guide_->denoised()}, ssim, features_, rest);
   }
 
-  const Geometry& geometry_;
+  const GeometryView& geometry_;
   const SimplifyOptions& options_;
   Surface surface_;
   SimplifiedMesh reference_;  // the surface without its oddities
@@ -88,7 +88,7 @@ std::size_t share_of(double ratio, std::size_t count) {
   return static_cast<std::size_t>(std::max(1LL, std::llround(ratio * static_cast<double>(count))));
 }
 
-std::size_t num_finite(const Geometry& geometry) {
+std::size_t num_finite(const GeometryView& geometry) {
   return static_cast<std::size_t>(
       std::count_if(geometry.positions.begin(), geometry.positions.end(), [](const Vec3& p) { return p.allFinite(); }));
 }
@@ -147,20 +147,20 @@ SimplifiedMesh search_by_error(const Simplifier& simplifier, double bound, Simpl
 }
 
 // Vertices are input vertices bit for bit, or in the input's frame.
-Geometry assemble(const Geometry& input, const Surface& surface, const SimplifiedMesh& simplified, Placement placement,
+Geometry assemble(const GeometryView& input, const Surface& surface, const SimplifiedMesh& simplified, Placement placement,
                   const RunContext& context) {
   Geometry output;
-  output.coordinate_type = input.coordinate_type;
+  output.coordinate_type = input.rest().coordinate_type;
   output.viewpoint = input.viewpoint;
-  output.comments = input.comments;
-  output.format = input.format;
+  output.comments = input.rest().comments;
+  output.format = input.rest().format;
   output.triangles = simplified.mesh.triangles;
   output.positions.reserve(simplified.mesh.positions.size());
   for (std::size_t v = 0; v < simplified.mesh.positions.size(); ++v) {
     output.positions.push_back(placement == Placement::Input ? input.positions[simplified.source_vertex[v]]
                                                              : Vec3(simplified.mesh.positions[v] + surface.origin));
   }
-  pipeline::transfer_attributes(input, surface, simplified, placement, output, context);
+  pipeline::transfer_attributes(input.rest(), surface, simplified, placement, output, context);
   return output;
 }
 
@@ -191,7 +191,7 @@ void warn_of_noise(const SimplifyOptions& options, const std::optional<ShapeGuid
                                                                : "; the vertices are the input's"));
 }
 
-SimplifyResult simplify_surface(const Geometry& geometry, const SimplifySize& size, const SimplifyOptions& options,
+SimplifyResult simplify_surface(const GeometryView& geometry, const SimplifySize& size, const SimplifyOptions& options,
                                 const RunContext& context) {
   const Simplifier simplifier(geometry, options, context.phase(0.0, 0.3, "prepare"));
   SimplifyResult result;
@@ -228,7 +228,7 @@ void refuse_on_cloud(const SimplifySize& size, const SimplifyOptions& options) {
   if (options.method == SimplifyMethod::Qslim) refuse("--method qslim", "has no edges to collapse");
 }
 
-SimplifyResult sample_cloud(const Geometry& geometry, const SimplifySize& size, const SimplifyOptions& options,
+SimplifyResult sample_cloud(const GeometryView& geometry, const SimplifySize& size, const SimplifyOptions& options,
                             const RunContext& context) {
   refuse_on_cloud(size, options);
   const bool paper = options.preset == SimplifyPreset::Paper || options.method == SimplifyMethod::SsimPaper;
@@ -292,7 +292,7 @@ SimplifyOptions simplify_preset(SimplifyPreset preset, Placement placement) {
   return options;
 }
 
-SimplifyResult simplify(const Geometry& geometry, const SimplifySize& size, const SimplifyOptions& options,
+SimplifyResult simplify(const GeometryView& geometry, const SimplifySize& size, const SimplifyOptions& options,
                         const RunContext& context) {
   validate(size);
   validate_options(options);

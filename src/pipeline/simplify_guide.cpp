@@ -24,7 +24,7 @@ std::vector<Vec3> denoise(const SurfaceGraph& graph, const Surface& surface, con
 
 }  // namespace
 
-ShapeGuide::ShapeGuide(const Geometry& geometry, const Surface& surface, const SimplifyOptions& options,
+ShapeGuide::ShapeGuide(const GeometryView& geometry, const Surface& surface, const SimplifyOptions& options,
                        const RunContext& context)
     : paper_(options.preset == SimplifyPreset::Paper), local_weight_(options.local_weight) {
   graph_ = graph_from_mesh(geometry.positions, surface.mesh.triangles, context.phase(0.0, 0.3, "build graph")).graph;

@@ -13,7 +13,7 @@ namespace shapelight::pipeline {
 /// Built once; each target takes its own samples.
 class ShapeGuide {
  public:
-  ShapeGuide(const Geometry& geometry, const Surface& surface, const SimplifyOptions& options,
+  ShapeGuide(const GeometryView& geometry, const Surface& surface, const SimplifyOptions& options,
              const RunContext& context);
 
   /// The samples of that many vertices, input indices, ascending; only vertices of the surface.

@@ -9,7 +9,7 @@
 namespace shapelight::pipeline {
 namespace {
 
-void check_pixels(const Geometry& geometry) {
+void check_pixels(const GeometryView& geometry) {
   const RangeGrid& grid = *geometry.grid;
   if (grid.pixel.size() != std::size_t{grid.width} * grid.height) {
     throw InvalidInput("range image: the number of pixels is not width x height");
@@ -23,7 +23,7 @@ void check_pixels(const Geometry& geometry) {
 }
 
 // All pixels wind alike, so either all faces look the right way or none does.
-void turn_to_viewer(const Geometry& geometry, const Vec3& center, std::vector<Triangle>& triangles) {
+void turn_to_viewer(const GeometryView& geometry, const Vec3& center, std::vector<Triangle>& triangles) {
   double towards = 0.0;
   for (const auto& [a, b, c] : triangles) {
     const Vec3 &p = geometry.positions[a], &q = geometry.positions[b], &r = geometry.positions[c];
@@ -36,7 +36,7 @@ void turn_to_viewer(const Geometry& geometry, const Vec3& center, std::vector<Tr
 
 }  // namespace
 
-Surface make_surface(const Geometry& geometry, const GraphOptions& options) {
+Surface make_surface(const GeometryView& geometry, const GraphOptions& options) {
   Surface surface;
   surface.origin = bounding_box(geometry.positions).center();
   surface.mesh.positions.reserve(geometry.size());

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
-#include <algorithm>
+#include <fstream>
+#include <optional>
 
 #include "point_files.hpp"
 
@@ -9,23 +10,24 @@ namespace {
 
 using test::TempFolder;
 
-const FormatInfo* find(std::string_view name) {
-  const auto formats = supported_formats();
-  const auto found = std::find_if(formats.begin(), formats.end(), [&](const FormatInfo& f) { return f.name == name; });
-  return found == formats.end() ? nullptr : &*found;
+std::optional<FormatInfo> find(std::string_view name) {
+  for (const FormatInfo& format : supported_formats()) {
+    if (format.name == name) return format;
+  }
+  return std::nullopt;
 }
 
 TEST(Io, ListsFormats) {
   for (const char* name : {"ply", "obj", "stl", "off", "pcd", "xyz", "las"}) {
-    ASSERT_NE(find(name), nullptr) << name;
+    ASSERT_TRUE(find(name).has_value()) << name;
     EXPECT_TRUE(find(name)->can_read && find(name)->can_write) << name;
   }
   for (const char* name : {"ptx", "png", "osu", "rif"}) {
-    ASSERT_NE(find(name), nullptr) << name;
+    ASSERT_TRUE(find(name).has_value()) << name;
     EXPECT_TRUE(find(name)->can_read && !find(name)->can_write) << name;
   }
   for (const char* name : {"laz", "e57"}) {
-    ASSERT_NE(find(name), nullptr) << name;
+    ASSERT_TRUE(find(name).has_value()) << name;
     EXPECT_FALSE(find(name)->can_read || find(name)->can_write) << name;
   }
 }
@@ -79,6 +81,46 @@ TEST(Io, CancelledWritingLeavesNothing) {
   EXPECT_THROW((void)write_geometry(folder.file("a.ply"), g, {}, {.stop = stop.get_token()}), Cancelled);
   EXPECT_TRUE(std::filesystem::is_empty(folder.file("a.ply").parent_path()));
 }
+
+Geometry two_points() {
+  Geometry geometry;
+  geometry.positions = {{1, 2, 3}, {4, 5, 6}};
+  return geometry;
+}
+
+TEST(Io, AnotherLibrarysFormatIsReadAndWritten) {
+  const TempFolder folder;
+  register_format({"twopoints",
+                   {".twopoints"},
+                   "for this test",
+                   [](const auto&, const ReadOptions&, const RunContext&) { return two_points(); },
+                   [](const auto& temporary, const Geometry& geometry, const WriteOptions&, const RunContext&) {
+                     std::ofstream(temporary) << geometry.size() << " points";
+                     return std::vector<std::string>{"colour"};
+                   }});
+  ASSERT_TRUE(find("twopoints").has_value());
+  EXPECT_TRUE(find("twopoints")->can_read && find("twopoints")->can_write);
+  const std::string path = folder.file("a.twopoints", "");
+  EXPECT_EQ(read_geometry(path).positions, two_points().positions);
+  EXPECT_EQ(read_geometry(path).format, "twopoints");
+  EXPECT_EQ(write_geometry(path, two_points(), {.overwrite = true}), std::vector<std::string>{"colour"});
+  EXPECT_EQ(test::contents_of(path), "2 points");
+}
+
+TEST(Io, AnotherLibrarysFailureLeavesTheTargetAlone) {
+  const TempFolder folder;
+  register_format({"failing", {".failing"}, "for this test", {}, [](const auto& temporary, auto&&...) {
+                     std::ofstream(temporary) << "half";
+                     throw WriteError("out of paper");
+                     return std::vector<std::string>{};
+                   }});
+  const std::string path = folder.file("a.failing", "old");
+  EXPECT_THROW((void)write_geometry(path, two_points(), {.overwrite = true}), WriteError);
+  EXPECT_EQ(test::contents_of(path), "old");
+  EXPECT_THROW((void)read_geometry(path), FormatError);
+}
+
+TEST(Io, AnExtensionHasOneOwner) { EXPECT_THROW(register_format({"mine", {".ply"}, "", {}, {}}), InvalidInput); }
 
 }  // namespace
 }  // namespace shapelight

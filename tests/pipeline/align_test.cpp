@@ -66,7 +66,7 @@ AlignOptions quick() {
 
 TEST(AlignScans, PlacesViewsFromAllAround) {
   const Views views = views_of("meshes/bunny.ply", 7);
-  const AlignResult result = align_scans(views.scans, quick());
+  const AlignResult result = align_scans(views_of(views.scans), quick());
   EXPECT_TRUE(result.all_placed());
   EXPECT_EQ(result.num_groups, 1u);
   EXPECT_TRUE(result.warnings.empty());
@@ -88,14 +88,14 @@ TEST(AlignScans, PlacesViewsFromAllAround) {
 
 TEST(AlignScans, TwoScansAreARegistration) {
   const Views views = views_of("meshes/bunny.ply", 12, 0, 2);
-  const AlignResult result = align_scans(views.scans, quick());
+  const AlignResult result = align_scans(views_of(views.scans), quick());
   ASSERT_TRUE(result.all_placed());
   ASSERT_EQ(result.pairs.size(), 1u);
   EXPECT_EQ(result.pairs[0].graph.use, EdgeUse::Used);
   EXPECT_LT(largest_angle(result, views), 0.3);
   AlignOptions plain = quick();
   plain.refine = false;
-  const AlignResult unrefined = align_scans(views.scans, plain);
+  const AlignResult unrefined = align_scans(views_of(views.scans), plain);
   EXPECT_TRUE(unrefined.scans[1].T_world_scan.isApprox(unrefined.pairs[0].T_target_source, 1e-9));
   const RegisterResult pair = register_scans(views.scans[1], views.scans[0], {}, plain.registration);
   EXPECT_TRUE(unrefined.scans[1].T_world_scan.isApprox(pair.T_target_source, 1e-9));
@@ -107,7 +107,7 @@ TEST(AlignScans, StrangersStayApart) {
   const Views others = views_of("meshes/armadillo.ply", 12, 0, 2);
   views.scans.insert(views.scans.begin(), others.scans.begin(), others.scans.end());
   views.T_mesh_scan.insert(views.T_mesh_scan.begin(), others.T_mesh_scan.begin(), others.T_mesh_scan.end());
-  const AlignResult result = align_scans(views.scans, quick());
+  const AlignResult result = align_scans(views_of(views.scans), quick());
   EXPECT_FALSE(result.all_placed());
   EXPECT_EQ(result.num_placed, 3u);
   for (const std::size_t i : {2, 3, 4}) EXPECT_EQ(result.scans[i].group, 0u);
@@ -123,7 +123,7 @@ TEST(AlignScans, InSequenceOnlyNeighboursAndLoops) {
   const Views views = views_of("meshes/bunny.ply", 7);
   AlignOptions options = quick();
   options.sequence = true;
-  const AlignResult result = align_scans(views.scans, options);
+  const AlignResult result = align_scans(views_of(views.scans), options);
   EXPECT_TRUE(result.all_placed());
   EXPECT_LT(largest_angle(result, views), 0.2);
   bool has_closed = false;
@@ -136,13 +136,13 @@ TEST(AlignScans, InSequenceOnlyNeighboursAndLoops) {
 
 TEST(AlignScans, UnitsAndLargeOffsetsDoNotMatter) {
   const Views views = views_of("meshes/bunny.ply", 12, 0, 3);
-  const AlignResult metres = align_scans(views.scans, quick());
+  const AlignResult metres = align_scans(views_of(views.scans), quick());
   std::vector<Geometry> moved;
   const Vec3 far(500000.0, 5000000.0, 200.0);
   for (const Geometry& scan : views.scans) {
     moved.push_back(testing::transformed(scan, 1000.0 * Eigen::Matrix3d::Identity(), far));
   }
-  const AlignResult millimetres = align_scans(moved, quick());
+  const AlignResult millimetres = align_scans(views_of(moved), quick());
   ASSERT_TRUE(metres.all_placed());
   ASSERT_TRUE(millimetres.all_placed());
   for (std::size_t i = 0; i < 3; ++i) {
@@ -157,7 +157,7 @@ TEST(AlignScans, SameForAnyNumberOfThreads) {
   const Views views = views_of("meshes/bunny.ply", 12, 0, 3);
   testing::expect_same_for_any_number_of_threads([&](const RunContext& context) {
     std::vector<double> numbers;
-    const AlignResult result = align_scans(views.scans, quick(), context);
+    const AlignResult result = align_scans(views_of(views.scans), quick(), context);
     for (const AlignedScan& scan : result.scans) {
       numbers.insert(numbers.end(), scan.T_world_scan.data(), scan.T_world_scan.data() + 16);
       numbers.push_back(scan.rms);
@@ -175,28 +175,28 @@ TEST(AlignScans, ProgressIsMonotoneAndCancels) {
     EXPECT_GE(fraction, last);
     last = fraction;
   };
-  (void)align_scans(views.scans, quick(), context);
+  (void)align_scans(views_of(views.scans), quick(), context);
   EXPECT_EQ(last, 1.0);
   std::stop_source stop;
   context = {0, stop.get_token(), [&](double fraction, std::string_view) {
                if (fraction > 0.5) stop.request_stop();
              }};
-  EXPECT_THROW((void)align_scans(views.scans, quick(), context), Cancelled);
+  EXPECT_THROW((void)align_scans(views_of(views.scans), quick(), context), Cancelled);
 }
 
 TEST(AlignScans, RefusesWhatMakesNoSense) {
   Views views = views_of("meshes/bunny.ply", 12, 0, 1);
-  EXPECT_THROW((void)align_scans(views.scans, {}), InvalidInput);
+  EXPECT_THROW((void)align_scans(views_of(views.scans), {}), InvalidInput);
   views.scans.push_back({});
   try {
-    (void)align_scans(views.scans, {});
+    (void)align_scans(views_of(views.scans), {});
     ADD_FAILURE() << "accepted";
   } catch (const FormatError& error) {
     EXPECT_NE(std::string(error.what()).find("scan 1"), std::string::npos) << error.what();
   }
   AlignOptions beyond;
   beyond.min_confidence = 1.5;
-  EXPECT_THROW((void)align_scans(views.scans, beyond), InvalidInput);
+  EXPECT_THROW((void)align_scans(views_of(views.scans), beyond), InvalidInput);
 }
 
 TEST(MergeScans, KeepsWhatAllHaveAndSaysWhere) {

@@ -18,9 +18,9 @@ constexpr Preset kPresets[] = {Preset::Detail, Preset::Fast, Preset::Paper};
 constexpr const char* kFiles[] = {"meshes/fandisk.off", "scans/bun000_quarter.rif", "clouds/simple.las"};
 
 // All of a table's values, NaN made comparable.
-std::vector<std::vector<double>> values_of(const Geometry& geometry) {
+std::vector<std::vector<double>> values_of(const AttributeTable& table) {
   std::vector<std::vector<double>> all;
-  for (const Column& column : geometry.attributes.columns()) {
+  for (const Column& column : table.columns()) {
     all.push_back(column.to_doubles());
     for (double& v : all.back()) v = std::isnan(v) ? 1e300 : v;
   }
@@ -33,7 +33,7 @@ TEST(Fields, ThreadsDoNotMatter) {
     for (const Preset preset : kPresets) {
       SCOPED_TRACE(std::string(file) + " " + std::string(enum_name(preset)));
       expect_same_for_any_number_of_threads([&](const RunContext& context) {
-        return values_of(add_fields(geometry, fields_preset(preset), context).geometry);
+        return values_of(point_fields(geometry, fields_preset(preset), context).attributes);
       });
     }
   }
@@ -71,18 +71,12 @@ TEST(Fields, ValuesAreInTheirRanges) {
   }
 }
 
-TEST(Fields, TheInputTravelsUnchanged) {
+TEST(Fields, EveryPointHasEveryField) {
   const Geometry geometry = read_data("clouds/simple.las");
-  const Geometry result = add_fields(geometry, fields_preset(Preset::Detail)).geometry;
-  EXPECT_EQ(result.positions, geometry.positions);
-  for (const Column& column : geometry.attributes.columns()) {
-    const Column* same = result.attributes.find(column.name);
-    ASSERT_NE(same, nullptr) << column.name;
-    EXPECT_TRUE(same->values == column.values) << column.name;
-  }
+  const AttributeTable table = point_fields(geometry, fields_preset(Preset::Detail)).attributes;
   for (const char* name : {"shape_index", "curvedness", "illumination", "reflectance", "segment", "importance"}) {
-    ASSERT_NE(result.attributes.find(name), nullptr) << name;
-    EXPECT_EQ(result.attributes.find(name)->size(), geometry.size());
+    ASSERT_NE(table.find(name), nullptr) << name;
+    EXPECT_EQ(table.find(name)->size(), geometry.size());
   }
 }
 
@@ -94,7 +88,7 @@ TEST(Fields, LostPointsHaveNoValueAndDuplicatesTheirTwins) {
   const std::size_t n = geometry.size();
   geometry.positions.push_back(geometry.positions[17]);
   geometry.positions.emplace_back(0.0, std::nan(""), 0.0);
-  const AttributeTable table = add_fields(geometry, fields_preset(Preset::Detail)).geometry.attributes;
+  const AttributeTable table = point_fields(geometry, fields_preset(Preset::Detail)).attributes;
   for (const char* name : {"shape_index", "curvedness", "illumination", "reflectance", "importance"}) {
     EXPECT_EQ(table.find(name)->as_double(n), table.find(name)->as_double(17)) << name;
     EXPECT_TRUE(std::isnan(table.find(name)->as_double(n + 1))) << name;
@@ -107,8 +101,8 @@ TEST(Fields, OrderOfTheInputDoesNotMatter) {
   const Geometry geometry = read_data("meshes/fandisk.off");
   const std::vector<Index> order = random_order(geometry.size(), 3);
   for (const Preset preset : kPresets) {
-    const AttributeTable a = add_fields(geometry, fields_preset(preset)).geometry.attributes.gather(order);
-    const AttributeTable b = add_fields(reordered(geometry, order), fields_preset(preset)).geometry.attributes;
+    const AttributeTable a = point_fields(geometry, fields_preset(preset)).attributes.gather(order);
+    const AttributeTable b = point_fields(reordered(geometry, order), fields_preset(preset)).attributes;
     for (const char* name : {"shape_index", "curvedness", "importance"}) {
       EXPECT_TRUE(a.find(name)->values == b.find(name)->values) << name << " " << enum_name(preset);
     }
@@ -126,9 +120,8 @@ TEST(Fields, NextToNothingIsNoReasonToFail) {
     Geometry geometry;
     geometry.positions = positions;
     for (const Preset preset : kPresets) {
-      const FieldsResult result = add_fields(geometry, fields_preset(preset));
-      EXPECT_EQ(result.geometry.size(), positions.size());
-      EXPECT_EQ(result.geometry.attributes.find("importance")->size(), positions.size());
+      const PointFields result = point_fields(geometry, fields_preset(preset));
+      EXPECT_EQ(result.attributes.find("importance")->size(), positions.size());
     }
   }
 }
@@ -137,11 +130,11 @@ TEST(Fields, OptionsAreChecked) {
   const Geometry geometry = read_data("scans/bun000_quarter.rif");
   FieldsOptions options;
   options.variation.neighbors = 1;
-  EXPECT_THROW((void)add_fields(geometry, options), InvalidInput);
+  EXPECT_THROW((void)point_fields(geometry, options), InvalidInput);
   options = {};
   options.retinex_options = {};
   options.graph.depth_jump = std::nan("");
-  EXPECT_THROW((void)add_fields(geometry, options), InvalidInput);
+  EXPECT_THROW((void)point_fields(geometry, options), InvalidInput);
 }
 
 }  // namespace

@@ -76,7 +76,7 @@ std::vector<std::pair<std::string, Work>> works(const Geometry& geometry) {
   for (const auto& [preset, name] : enum_names(Preset{})) {
     all.emplace_back(std::string("sample ") + std::string(name), sampling(sample_preset(preset)));
     all.emplace_back(std::string("fields ") + std::string(name), [&geometry, p = preset](const RunContext& context) {
-      (void)add_fields(geometry, fields_preset(p), context);
+      (void)point_fields(geometry, fields_preset(p), context);
     });
   }
   for (const auto& [method, name] : enum_names(SamplingMethod{})) {

@@ -48,6 +48,8 @@ class AttributeTable {
   [[nodiscard]] Column* find(std::string_view name);
   /// Adds the column, or replaces the one of the same name in its place.
   void set(Column column);
+  /// Sets every column of another table.
+  void set(AttributeTable columns);
   bool remove(std::string_view name);  ///< false when absent
   [[nodiscard]] AttributeTable gather(std::span<const Index> indices) const;
 

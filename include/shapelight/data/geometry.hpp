@@ -54,8 +54,26 @@ struct Geometry {
   [[nodiscard]] std::size_t size() const { return positions.size(); }
 };
 
+/// What algorithms read: the arrays of a Geometry, or those of another library, taken as they are. Somebody else holds
+/// them and must outlive the view.
+struct GeometryView {
+  std::span<const Vec3> positions;
+  std::span<const Triangle> triangles;
+  const RangeGrid* grid = nullptr;
+  std::optional<Vec3> viewpoint;
+  const Geometry* whole = nullptr;  ///< where attributes are, when there are any
+
+  GeometryView() = default;
+  GeometryView(const Geometry& geometry);
+  [[nodiscard]] GeometryKind kind() const;
+  [[nodiscard]] std::size_t size() const { return positions.size(); }
+  /// The geometry that this is a view of; an empty one for plain arrays.
+  [[nodiscard]] const Geometry& rest() const;
+};
+[[nodiscard]] std::vector<GeometryView> views_of(std::span<const Geometry> geometries);
+
 /// The points at `indices` in that order, with their attributes; triangles and pixels are left behind.
-[[nodiscard]] Geometry select_points(const Geometry& geometry, std::span<const Index> indices);
+[[nodiscard]] Geometry select_points(const GeometryView& geometry, std::span<const Index> indices);
 
 /// Moves a geometry: positions, viewpoint, and the normals among the attributes (nx, ny, nz, of points and triangles).
 void transform_geometry(Geometry& geometry, const RigidTransform& T_new_old);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "shapelight/core/types.hpp"
@@ -10,6 +11,16 @@ namespace shapelight {
 struct TriangleMesh {
   std::vector<Vec3> positions;  ///< [input length unit]
   std::vector<Triangle> triangles;
+};
+
+/// A mesh whose arrays somebody else holds; they must outlive it.
+struct MeshView {
+  std::span<const Vec3> positions;  ///< [input length unit]
+  std::span<const Triangle> triangles;
+
+  MeshView(std::span<const Vec3> mesh_positions, std::span<const Triangle> mesh_triangles)
+      : positions(mesh_positions), triangles(mesh_triangles) {}
+  MeshView(const TriangleMesh& mesh) : MeshView(mesh.positions, mesh.triangles) {}
 };
 
 }  // namespace shapelight

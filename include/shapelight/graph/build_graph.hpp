@@ -62,7 +62,7 @@ struct BuiltGraph {
 [[nodiscard]] BuiltGraph graph_of_places(std::span<const Vec3> positions, const RunContext& context = {});
 
 /// The builder that fits geometry.kind().
-[[nodiscard]] BuiltGraph build_graph(const Geometry& geometry, const GraphOptions& options = {},
+[[nodiscard]] BuiltGraph build_graph(const GeometryView& geometry, const GraphOptions& options = {},
                                      const RunContext& context = {});
 
 /// The triangles of a range image: two per square of four pixels, split along the shorter diagonal, one where a pixel

@@ -1,8 +1,8 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -29,13 +29,31 @@ struct WriteOptions {
 
 /// One supported file format.
 struct FormatInfo {
-  std::string_view name;                     ///< "ply"
-  std::vector<std::string_view> extensions;  ///< with the dot, lower case
-  std::string_view description;
+  std::string name;                     ///< "ply"
+  std::vector<std::string> extensions;  ///< with the dot, lower case
+  std::string description;
   bool can_read = false;
   bool can_write = false;
 };
-[[nodiscard]] std::span<const FormatInfo> supported_formats();
+[[nodiscard]] std::vector<FormatInfo> supported_formats();
+
+/// A format that another library reads or writes. Either function may be empty.
+struct FormatPlugin {
+  using Read = std::function<Geometry(const std::filesystem::path&, const ReadOptions&, const RunContext&)>;
+  /// Writes to `temporary`, an empty file beside the target that is renamed afterwards; returns the names of attributes
+  /// that the format cannot hold.
+  using Write = std::function<std::vector<std::string>(const std::filesystem::path& temporary, const Geometry&,
+                                                       const WriteOptions&, const RunContext&)>;
+  std::string name;                     ///< of a known format ("laz") or a new one
+  std::vector<std::string> extensions;  ///< with the dot, lower case
+  std::string description;
+  Read read;
+  Write write;
+};
+/// Makes the format known to read_geometry() and write_geometry(), for the whole process; one of the same name is
+/// replaced. Call it before reading and writing begins: it must not run beside them.
+/// Throws InvalidInput when an extension belongs to a format of another name.
+void register_format(FormatPlugin plugin);
 
 /// Throws InvalidInput when no writer fits the path's extension; names the extensions that have one.
 void check_writable_format(const std::filesystem::path& path);

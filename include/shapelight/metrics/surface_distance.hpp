@@ -56,13 +56,13 @@ struct SurfaceDistance {
 /// deviation.
 /// Throws: InvalidInput (no triangle or no area, index out of range, non-finite corner: says in which mesh), Cancelled.
 /// Cost:   O((s + n) log n), about a microsecond per sample; 4 bytes per sample. Same result for any RunContext.
-[[nodiscard]] SurfaceDistance measure_surface_distance(const TriangleMesh& reference, const TriangleMesh& test,
+[[nodiscard]] SurfaceDistance measure_surface_distance(const MeshView& reference, const MeshView& test,
                                                        const SurfaceDistanceOptions& options = {},
                                                        const RunContext& context = {});
 
 /// Distance from every vertex to the surface, as Metro writes it per vertex; NaN at a vertex that is not finite.
 /// Cost: O(n log n).
-[[nodiscard]] std::vector<double> vertex_distances(const TriangleMesh& mesh, const TriangleTree& surface,
+[[nodiscard]] std::vector<double> vertex_distances(const MeshView& mesh, const TriangleTree& surface,
                                                    const RunContext& context = {});
 
 }  // namespace shapelight

@@ -74,7 +74,7 @@ struct AlignResult {
 /// scan of the largest group. A scan that nothing sure connects is never placed: it has a group of its own.
 /// Pre: at least two scans, each with enough points to register. Throws InvalidInput (names the scan), Cancelled.
 /// Same result for any RunContext. Cost: a registration per pair tried; all scans are held in memory.
-[[nodiscard]] AlignResult align_scans(std::span<const Geometry> scans, const AlignOptions& options = {},
+[[nodiscard]] AlignResult align_scans(std::span<const GeometryView> scans, const AlignOptions& options = {},
                                       const RunContext& context = {});
 
 /// All finite points of the placed scans (group 0) in the world frame, scan after scan, as one cloud: with the

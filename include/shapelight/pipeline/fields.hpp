@@ -83,8 +83,8 @@ struct SurfaceFields {
 [[nodiscard]] SurfaceFields compute_fields(const SurfaceGraph& graph, GeometryKind kind, const FieldsOptions& options,
                                            const RunContext& context = {});
 
-struct FieldsResult {
-  Geometry geometry;   ///< the input with shape_index, curvedness, illumination, reflectance, segment, importance
+struct PointFields {
+  AttributeTable attributes;  ///< shape_index, curvedness, illumination, reflectance, segment, importance
   double noise = 0.0;  ///< sigma, [input length unit]
   double mean_edge_length = 0.0;  ///< h, [input length unit]
   bool denoised = false;
@@ -93,8 +93,10 @@ struct FieldsResult {
   GraphDiagnostics diagnostics;
 };
 
-/// The input with the fields added as attributes; everything else travels unchanged. A point without a vertex (not
+/// The fields per point of the input, float32 and int32 as they are written to files. A point without a vertex (not
 /// finite) gets NaN and the segment -1; a duplicate has the values of the point it repeats.
-[[nodiscard]] FieldsResult add_fields(Geometry geometry, const FieldsOptions& options, const RunContext& context = {});
+/// Throws InvalidInput (option out of range), Cancelled. Cost: the sum of the stages.
+[[nodiscard]] PointFields point_fields(const GeometryView& geometry, const FieldsOptions& options,
+                                       const RunContext& context = {});
 
 }  // namespace shapelight

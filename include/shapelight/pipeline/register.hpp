@@ -66,7 +66,7 @@ struct PreparedScan {
 
 /// Thins a scan. `name` is what messages call it. Throws FormatError (too few points to register), InvalidInput,
 /// Cancelled.
-[[nodiscard]] PreparedScan prepare_scan(const Geometry& geometry, const RegisterOptions& options = {},
+[[nodiscard]] PreparedScan prepare_scan(const GeometryView& geometry, const RegisterOptions& options = {},
                                         std::string_view name = "scan", const RunContext& context = {});
 
 struct RegisterResult {
@@ -86,7 +86,7 @@ struct RegisterResult {
 /// assessment.confidence before using the pose.
 /// Throws FormatError (a scan of fewer than 10 distinct points), InvalidInput, Cancelled. Same result for any
 /// RunContext.
-[[nodiscard]] RegisterResult register_scans(const Geometry& source, const Geometry& target,
+[[nodiscard]] RegisterResult register_scans(const GeometryView& source, const GeometryView& target,
                                             const std::optional<RigidTransform>& T_target_source_init = {},
                                             const RegisterOptions& options = {}, const RunContext& context = {});
 

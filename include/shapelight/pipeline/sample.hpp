@@ -74,7 +74,7 @@ struct SampleResult {
 /// skipped boundary points and non-finite ones never.
 /// Throws InvalidInput (options, or not exactly one size), TargetUnreachable (fewer points can be chosen than asked
 /// for; the message says how many), Cancelled. Same result for any RunContext and any order of the input.
-[[nodiscard]] SampleResult sample(const Geometry& geometry, const SampleSize& size, const SampleOptions& options = {},
+[[nodiscard]] SampleResult sample(const GeometryView& geometry, const SampleSize& size, const SampleOptions& options = {},
                                   const RunContext& context = {});
 
 }  // namespace shapelight

@@ -98,7 +98,7 @@ struct SimplifyResult {
 /// face that the input lacked; Placement::Input returns input vertices only, bit for bit.
 /// Throws InvalidInput, TargetUnreachable (reachable(): faces when faces were asked for, else vertices),
 /// PostconditionFailed, Cancelled. Same result for any RunContext.
-[[nodiscard]] SimplifyResult simplify(const Geometry& geometry, const SimplifySize& size,
+[[nodiscard]] SimplifyResult simplify(const GeometryView& geometry, const SimplifySize& size,
                                       const SimplifyOptions& options = {}, const RunContext& context = {});
 
 }  // namespace shapelight
