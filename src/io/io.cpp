@@ -13,8 +13,8 @@ namespace shapelight {
 namespace {
 
 using Reader = std::function<Geometry(const io::Source&)>;
-using Writer = std::function<io::DroppedAttributes(io::OutputFile&, const Geometry&, const WriteOptions&,
-                                                   const RunContext&)>;
+using Writer =
+    std::function<io::DroppedAttributes(io::OutputFile&, const Geometry&, const WriteOptions&, const RunContext&)>;
 
 struct Format {
   std::string name;
@@ -34,7 +34,10 @@ Writer quick(io::DroppedAttributes (*write)(io::OutputFile&, const Geometry&, co
 // In the order in which they are listed to people.
 std::vector<Format>& formats() {
   static std::vector<Format> table = {
-      {"ply", {".ply"}, "Polygon File Format: meshes, clouds and Stanford range images", io::read_ply,
+      {"ply",
+       {".ply"},
+       "Polygon File Format: meshes, clouds and Stanford range images",
+       io::read_ply,
        quick(io::write_ply)},
       {"obj", {".obj"}, "Wavefront OBJ meshes", io::read_obj, quick(io::write_obj)},
       {"stl", {".stl"}, "Stereolithography meshes", io::read_stl, quick(io::write_stl)},
@@ -50,7 +53,11 @@ std::vector<Format>& formats() {
       {"png", {".png"}, "16-bit depth images with camera intrinsics", io::read_depth_png, {}},
       {"osu", {".abs"}, "Ohio State University range images as text", io::read_osu, {}},
       {"rif", {".rif"}, "RIF range images as text", io::read_rif, {}},
-      {"laz", {".laz"}, "compressed LAS and COPC (.copc.laz), by the Python package: pip install shapelight[las]", {}, {}},
+      {"laz",
+       {".laz"},
+       "compressed LAS and COPC (.copc.laz), by the Python package: pip install shapelight[las]",
+       {},
+       {}},
       {"e57", {".e57"}, "ASTM E57 scans, by the Python package: pip install shapelight[e57]", {}, {}},
   };
   return table;
@@ -141,8 +148,8 @@ Geometry read_geometry(const std::filesystem::path& path, const ReadOptions& opt
                                   path.extension().string(), names_of(&Format::read)));
   }
   if (!format->read) {
-    throw FormatError(fmt::format("{}: {} files cannot be read here ({})", path.string(), format->name,
-                                  format->description));
+    throw FormatError(
+        fmt::format("{}: {} files cannot be read here ({})", path.string(), format->name, format->description));
   }
   context.check();
   Geometry geometry = format->read({file, path, options, context});

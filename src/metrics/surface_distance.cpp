@@ -30,10 +30,10 @@ struct Surface {
 };
 
 Surface prepare(const MeshView& original, const Vec3& origin, std::string_view name, const RunContext& context) {
-  Surface surface{{{original.positions.begin(), original.positions.end()},
-                   {original.triangles.begin(), original.triangles.end()}},
-                  {},
-                  {}};
+  Surface surface{
+      {{original.positions.begin(), original.positions.end()}, {original.triangles.begin(), original.triangles.end()}},
+      {},
+      {}};
   for (Vec3& p : surface.mesh.positions) p -= origin;
   try {
     surface.tree = TriangleTree(surface.mesh, context);

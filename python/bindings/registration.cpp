@@ -1,0 +1,7 @@
+#include "bindings.hpp"
+
+namespace shapelight::python {
+
+void bind_registration(nb::module_&) {}
+
+}  // namespace shapelight::python

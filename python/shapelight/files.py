@@ -1,0 +1,92 @@
+"""Reading and writing, by the format that the extension names."""
+
+from __future__ import annotations
+
+import os
+from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple, Union
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _core
+from .geometry import Geometry, as_transform
+from .progress import Progress, as_callable
+
+Path = Union[str, "os.PathLike[str]"]
+
+
+def read(
+    path: Path,
+    *,
+    intrinsics: Optional[Tuple[float, float, float, float]] = None,
+    depth_scale: float = 1000.0,
+    threads: int = 0,
+    progress: Progress = None,
+) -> Geometry:
+    """Reads a mesh, range image or point cloud; the format is chosen by extension, see `formats`.
+
+    intrinsics   fx, fy, cx, cy [pixels] of a depth image; else a text file beside the image is looked for
+    depth_scale  [steps per output length unit] of a depth image: depth = value / depth_scale
+
+    Raises ReadError (missing, unreadable), FormatError (malformed or unsupported; names the place).
+    """
+    with as_callable(progress) as report:
+        return Geometry(**_core.read_geometry(os.fspath(path), intrinsics, depth_scale, threads, report))
+
+
+def write(
+    path: Path,
+    geometry: Any,
+    *,
+    ascii: bool = False,
+    overwrite: bool = False,
+    threads: int = 0,
+    progress: Progress = None,
+) -> List[str]:
+    """Writes beside the target, then renames, so that the target is either old or complete.
+
+    Returns the names of attributes that the format cannot hold.
+    Raises InvalidInput (unknown extension), WriteError (exists and `overwrite` is off, no space, ...).
+    """
+    from .interop import as_geometry
+
+    with as_callable(progress) as report:
+        view = as_geometry(geometry)._view()
+        return list(_core.write_geometry(os.fspath(path), view, ascii, overwrite, threads, report))
+
+
+def formats() -> List[Dict[str, Any]]:
+    """The file formats that can be read and written: name, extensions, description, can_read, can_write."""
+    return list(_core.supported_formats())
+
+
+Reader = Callable[[str, _core.RunContext], Geometry]
+Writer = Callable[[str, Geometry, _core.RunContext], List[str]]
+
+
+def register_format(
+    name: str,
+    extensions: Sequence[str],
+    description: str,
+    *,
+    read: Optional[Reader] = None,
+    write: Optional[Writer] = None,
+) -> None:
+    """Makes a format known to `read`, `write` and the command, for the whole process.
+
+    read   (path, context) -> Geometry; call context.check() now and then: it raises when Ctrl-C was pressed
+    write  (path, geometry, context) -> names of attributes left out; the path is an empty file that is renamed later
+
+    Raises InvalidInput when an extension belongs to another format.
+    """
+    _core.register_format(name, list(extensions), description, read, write)
+
+
+def read_transform(path: Path) -> NDArray[np.float64]:
+    """(4, 4): a rigid transform from plain text, 4 rows of 4 numbers, source into target."""
+    return np.asarray(_core.read_transform(os.fspath(path)))
+
+
+def write_transform(path: Path, transform: ArrayLike, *, overwrite: bool = False) -> None:
+    """Writes a rigid (4, 4) transform with 17 digits, beside its target, then renames. Raises WriteError."""
+    _core.write_transform(os.fspath(path), as_transform(transform), overwrite)

@@ -1,0 +1,159 @@
+"""Points, and whatever of triangles, pixels and attributes the input has."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any, Dict, List, Optional
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _core
+from .errors import InvalidInput
+
+NO_INDEX = 0xFFFFFFFF  # marks "no point" in a grid
+
+
+@dataclass
+class LasInfo:
+    """What a LAS file says beside its points; kept so that writing it back loses nothing."""
+
+    scale: tuple[float, float, float]
+    offset: tuple[float, float, float]
+    point_format: int
+    header: bytes = field(repr=False)
+    vlrs: bytes = field(repr=False)
+
+
+def as_points(points: ArrayLike, name: str = "points") -> NDArray[np.float64]:
+    """(n, 3) float64, C-contiguous: the array itself when it is that already, else a copy.
+
+    Raises InvalidInput for another shape and for what is no array of numbers.
+    """
+    try:
+        array = np.asarray(points)
+        array = np.ascontiguousarray(array, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise InvalidInput(f"{name}: expected an (n, 3) array of numbers: {error}") from None
+    if array.ndim != 2 or array.shape[1] != 3:
+        raise InvalidInput(f"{name}: shape {array.shape}, expected (n, 3)")
+    return array
+
+
+def as_indices(values: ArrayLike, name: str, shape: tuple[int, ...]) -> NDArray[np.uint32]:
+    """uint32, C-contiguous, of a shape in which -1 stands for any length. Raises InvalidInput, also for negatives."""
+    array = np.asarray(values)
+    if array.size == 0:
+        array = np.zeros([max(n, 0) for n in shape], dtype=np.uint32)
+    if array.dtype.kind not in "iu":
+        raise InvalidInput(f"{name}: {array.dtype}, expected whole numbers")
+    if array.ndim != len(shape) or any(w not in (-1, n) for w, n in zip(shape, array.shape)):
+        wanted = ", ".join("n" if n < 0 else str(n) for n in shape)
+        raise InvalidInput(f"{name}: shape {array.shape}, expected ({wanted})")
+    if array.dtype != np.uint32 and array.size and (array.min() < 0 or array.max() > NO_INDEX):
+        raise InvalidInput(f"{name}: {array.min()} to {array.max()}, expected 0 to {NO_INDEX}")
+    return np.ascontiguousarray(array, dtype=np.uint32)
+
+
+def _column(values: ArrayLike, name: str, count: int) -> NDArray[Any]:
+    array = np.ascontiguousarray(values)
+    if array.dtype == np.bool_:
+        array = array.astype(np.uint8)
+    elif array.dtype == np.float16:
+        array = array.astype(np.float32)
+    if array.shape != (count,):
+        raise InvalidInput(f"attribute {name}: shape {array.shape}, expected ({count},)")
+    return array
+
+
+@dataclass(repr=False, eq=False)
+class Geometry:
+    """A mesh, a range image or a point cloud: what `read` returns, `write` takes, and every job accepts.
+
+    positions            (n, 3) float64 [input length unit], exact; not finite where nothing was measured
+    triangles            (m, 3) uint32, counter-clockwise seen from outside; empty unless a mesh
+    attributes           {name: (n,)} per point. Names follow PLY: nx ny nz, red green blue, intensity, ...
+    triangle_attributes  {name: (m,)} per triangle
+    grid                 (height, width) uint32: the point of each pixel, NO_INDEX where nothing was seen; or None
+    viewpoint            (3,) float64: the sensor, when known; or None
+    corner_texcoords     (3 m, 2) float32 per triangle corner, or None
+    coordinate_type      what the coordinates had in the file: "float32" or "float64"
+    """
+
+    positions: NDArray[np.float64]
+    triangles: NDArray[np.uint32] = field(default_factory=lambda: np.zeros((0, 3), np.uint32))
+    attributes: Dict[str, NDArray[Any]] = field(default_factory=dict)
+    triangle_attributes: Dict[str, NDArray[Any]] = field(default_factory=dict)
+    grid: Optional[NDArray[np.uint32]] = None
+    viewpoint: Optional[NDArray[np.float64]] = None
+    corner_texcoords: Optional[NDArray[np.float32]] = None
+    coordinate_type: str = "float64"
+    comments: List[str] = field(default_factory=list)
+    warnings: List[str] = field(default_factory=list)
+    format: str = ""
+    las: Optional[LasInfo] = None
+
+    def __post_init__(self) -> None:
+        self.positions = as_points(self.positions, "positions")
+        self.triangles = as_indices(self.triangles, "triangles", (-1, 3))
+        if self.grid is not None:
+            self.grid = as_indices(self.grid, "grid", (-1, -1))
+        if self.viewpoint is not None:
+            self.viewpoint = as_points([self.viewpoint], "viewpoint")[0]  # type: ignore[list-item]
+
+    @property
+    def kind(self) -> str:
+        """"mesh", "range_image" or "cloud"."""
+        if len(self.triangles):
+            return "mesh"
+        return "cloud" if self.grid is None else "range_image"
+
+    @property
+    def diagonal(self) -> float:
+        """[input length unit] of the bounding box of the finite points."""
+        return float(self._view().diagonal)
+
+    def __len__(self) -> int:
+        return len(self.positions)
+
+    def __repr__(self) -> str:
+        faces = f", {len(self.triangles)} triangles" if len(self.triangles) else ""
+        pixels = "" if self.grid is None else f", {self.grid.shape[1]} x {self.grid.shape[0]} pixels"
+        names = f", attributes {', '.join(self.attributes)}" if self.attributes else ""
+        return f"Geometry({self.kind}: {len(self)} points{faces}{pixels}{names})"
+
+    def select(self, indices: ArrayLike) -> Geometry:
+        """The points at `indices` in that order, with their attributes; triangles and pixels are left behind."""
+        return Geometry(**self._view().select_points(as_indices(indices, "indices", (-1,))))
+
+    def transformed(self, T_new_old: ArrayLike) -> Geometry:
+        """A moved copy: p_new = R p_old + t, with normals and viewpoint. `T_new_old` is rigid, (4, 4)."""
+        return Geometry(**self._view().transformed(as_transform(T_new_old)))
+
+    def _view(self) -> _core.GeometryView:
+        """What the library reads: positions, triangles and pixels in place, attributes copied."""
+        n, m = len(self.positions), len(self.triangles)
+        rest: Dict[str, Any] = {
+            "attributes": {k: _column(v, k, n) for k, v in self.attributes.items()},
+            "triangle_attributes": {k: _column(v, k, m) for k, v in self.triangle_attributes.items()},
+            "coordinate_type": self.coordinate_type,
+            "comments": list(self.comments),
+            "format": self.format,
+            "las": self.las,
+        }
+        if self.corner_texcoords is not None:
+            uv = np.ascontiguousarray(self.corner_texcoords, dtype=np.float32).reshape(-1, 2)
+            if len(uv) != 3 * m:
+                raise InvalidInput(f"corner_texcoords: {len(uv)} rows, expected three for each of {m} triangles")
+            rest["corner_texcoords"] = uv
+        triangles = self.triangles if m else None
+        viewpoint = None if self.viewpoint is None else [float(x) for x in self.viewpoint]
+        return _core.GeometryView(self.positions, triangles, self.grid, viewpoint, rest)
+
+
+def as_transform(transform: ArrayLike, name: str = "transform") -> NDArray[np.float64]:
+    """(4, 4) float64, C-contiguous. Raises InvalidInput for another shape."""
+    array = np.ascontiguousarray(transform, dtype=np.float64)
+    if array.shape != (4, 4):
+        raise InvalidInput(f"{name}: shape {array.shape}, expected (4, 4)")
+    return array

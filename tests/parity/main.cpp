@@ -1,0 +1,12 @@
+#include <cstdio>
+
+#include "recorder.hpp"
+
+int main(int argc, char** argv) {
+  if (argc != 2) {
+    std::fputs("usage: parity FOLDER\n", stderr);
+    return 2;
+  }
+  const shapelight::parity::Recorder recorder{argv[1]};
+  shapelight::parity::record_jobs(recorder);
+}
