@@ -5,5 +5,5 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 
 python=${PYTHON:-python3}
-DISABLE_MKDOCS_2_WARNING=true NO_MKDOCS_2_WARNING=1 "$python" -m mkdocs build --strict --clean --quiet
+DISABLE_MKDOCS_2_WARNING=true NO_MKDOCS_2_WARNING=1 "$python" -m mkdocs build --strict --clean
 "$python" tools/check_site.py site

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Fills the option tables of docs/*.md from `shapelight COMMAND --help`, so that they cannot differ from the program.
+"""Fills the option tables of docs/**/*.md from `shapelight COMMAND --help`, so that they cannot differ from the program.
 
   tools/option_tables.py [--check] [--shapelight build/release/bin/shapelight]
 
@@ -53,7 +53,7 @@ def main():
     parser.add_argument("--shapelight", default="build/release/bin/shapelight")
     arguments = parser.parse_args()
     stale = []
-    for page in sorted((Path(__file__).parent.parent / "docs").glob("*.md")):
+    for page in sorted((Path(__file__).parent.parent / "docs").rglob("*.md")):
         old = page.read_text()
         new = MARKED.sub(lambda m: m[1] + table(arguments.shapelight, m[2], m[3]) + m[4], old)
         if new != old:
