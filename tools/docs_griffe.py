@@ -28,13 +28,13 @@ def as_table(paragraph):
             rows[-1][1] += " " + line.strip()
         else:
             return paragraph
-    return "\n".join(["| | |", "| --- | --- |", *(f"| `{name}` | {cell(text)} |" for name, text in rows)])
+    return "\n".join(["| argument | meaning |", "| --- | --- |", *(f"| `{name}` | {cell(text)} |" for name, text in rows)])
 
 
 def options_as_table(rows):
     lines = ["**Options**", "", "| option | meaning | unit | default |", "| --- | --- | --- | --- |"]
     for row in rows:
-        choices = f": {', '.join(f'`{c}`' for c in row['choices'])}" if row["choices"] else ""
+        choices = f" One of {', '.join(f'`{c}`' for c in row['choices'])}." if row["choices"] else ""
         unit = "" if row["unit"] == "1" else row["unit"]
         default = row["default"] if row["choices"] else f"{row['default']:g}" if row["type"] == "float" else row["default"]
         lines.append(f"| `{row['name']}` | {cell(row['meaning'])}{choices} | {unit} | {default} |")
