@@ -16,6 +16,7 @@ from pathlib import Path
 
 MARKED = re.compile(r"(<!-- options: (\S+)(?: / ([^>]+?))? -->\n).*?(<!-- end of options -->)", re.DOTALL)
 FLAGS = re.compile(r"^  (?P<flags>-\S.*?)(?:\s{2,}(?P<meaning>\S.*))?$")
+CHOICES = re.compile(r" ([\w-]+(?:\|[\w-]+)+)$")
 EXTRAS = re.compile(r"(?: \[(?P<unit>[^\]]+)\])?(?: \((?P<default>[^()]+)\))?$")
 
 
@@ -33,9 +34,12 @@ def parse(text):
 
 
 def row(flags, meaning):
-    flags = re.sub(r"\{false\}|:\{.*?\}|:INT in \[.*?\]| REQUIRED| TEXT| \.\.\.", "", flags).replace("|", "\\|")
+    flags = re.sub(r"\{false\}|:\{.*?\}|:INT in \[.*?\]| REQUIRED| TEXT| \.\.\.", "", flags)
     extras = EXTRAS.search(meaning)
     text = meaning[:extras.start()].replace("|", "\\|")
+    if choices := CHOICES.search(flags):  # a | in code ends the cell for some readers of Markdown, whether escaped or not
+        flags = flags[:choices.start()] + " NAME"
+        text += " One of " + ", ".join(f"`{name}`" for name in choices[1].split("|")) + "."
     return f"| `{flags}` | {text} | {extras['unit'] or ''} | {extras['default'] or ''} |"
 
 

@@ -19,6 +19,8 @@ import docs_blocks  # noqa: E402
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
 PICTURES = re.compile(r"!\[[^\]]*\]\((?:\S*/)?images/([\w.-]+)\)")
 
+SHOWN_ONLY = ("text", "json", "cmake")
+
 
 @pytest.fixture(scope="session")
 def prefix(tmp_path_factory):
@@ -47,6 +49,12 @@ def test_blocks_run(page, tmp_path, request):
     if page.parent.name == "tutorials" or page.name == "gallery.md":
         missing = [name for name in PICTURES.findall(page.read_text()) if not (tmp_path / name).exists()]
         assert not missing, f"shown, but made by no block of the page: {missing}"
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
+def test_every_block_says_what_it_is(page):
+    languages = {fence["info"].split(" ")[0] for fence in docs_blocks.FENCE.finditer(page.read_text())}
+    assert languages <= {*docs_blocks.RUNNERS, *SHOWN_ONLY}
 
 
 def parsed(text):
