@@ -19,6 +19,7 @@ from .files import formats, read, read_transform, register_format, write, write_
 from .geometry import Geometry
 from .interop import as_geometry
 from .jobs import fields, sample
+from .pictures import render, write_png
 from .results import FieldsResult, SampleResult
 
 __all__ = [
@@ -40,7 +41,9 @@ __all__ = [
     "read",
     "read_transform",
     "register_format",
+    "render",
     "sample",
     "write",
+    "write_png",
     "write_transform",
 ]

@@ -62,6 +62,21 @@ class FieldsOptions(TypedDict, total=False):
     """Smaller shares of all vertices join a neighbour. (0.0005)"""
 
 
+class RenderOptions(TypedDict, total=False):
+    """Options of render()."""
+
+    width: int
+    """Width of the picture. [pixels] (1200)"""
+    height: int
+    """Height of the picture. [pixels] (900)"""
+    supersample: int
+    """Smoothness of edges. [samples per pixel and axis] (2)"""
+    field_of_view: float
+    """Strength of the perspective; 0.1 is orthographic. [deg] (20.0)"""
+    occlusion: float
+    """Darkness of corners and crevices. (1.0)"""
+
+
 class SampleOptions(TypedDict, total=False):
     """Options of sample()."""
 
