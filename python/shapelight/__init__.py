@@ -18,12 +18,27 @@ from .errors import (
 from .files import formats, read, read_transform, register_format, write, write_transform
 from .geometry import Geometry
 from .interop import as_geometry
-from .jobs import fields, sample
+from .jobs import align, fields, metrics, register, sample, simplify
 from .pictures import render, write_png
-from .results import FieldsResult, SampleResult
+from .results import (
+    AlignedPair,
+    AlignedScan,
+    AlignResult,
+    DistanceSummary,
+    FieldsResult,
+    RegisterResult,
+    SampleResult,
+    SamplingQuality,
+    SimplifyResult,
+    SurfaceDistance,
+)
 
 __all__ = [
+    "AlignResult",
+    "AlignedPair",
+    "AlignedScan",
     "BudgetExceeded",
+    "DistanceSummary",
     "Error",
     "FieldsResult",
     "FormatError",
@@ -31,18 +46,26 @@ __all__ = [
     "InvalidInput",
     "PostconditionFailed",
     "ReadError",
+    "RegisterResult",
     "SampleResult",
+    "SamplingQuality",
+    "SimplifyResult",
+    "SurfaceDistance",
     "TargetUnreachable",
     "WriteError",
     "__version__",
+    "align",
     "as_geometry",
     "fields",
     "formats",
+    "metrics",
     "read",
     "read_transform",
+    "register",
     "register_format",
     "render",
     "sample",
+    "simplify",
     "write",
     "write_png",
     "write_transform",
