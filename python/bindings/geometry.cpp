@@ -91,7 +91,7 @@ RigidTransform to_transform(const PoseArray& pose) {
   if (!rigid) throw InvalidInput("transform: expected a rigid motion: a rotation, a translation, and 0 0 0 1 below");
   RigidTransform transform = RigidTransform::Identity();
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(linear, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const bool exact = (linear * linear.transpose()).isIdentity(1e-15);
+  const bool exact = (linear * linear.transpose()).isIdentity(1e-14);
   transform.linear() = exact ? linear : Eigen::Matrix3d(svd.matrixU() * svd.matrixV().transpose());
   transform.translation() = matrix.topRightCorner<3, 1>();
   return transform;

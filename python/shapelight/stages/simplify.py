@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Dict, Optional
+from typing import TYPE_CHECKING, Any, Dict, Optional, Tuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .. import _core
 from ..describe import described
+from ..errors import InvalidInput
 from ..geometry import as_indices, as_points
 from ..interop import GeometryLike, as_geometry
 from ..progress import Progress, as_callable
@@ -61,7 +62,7 @@ def simplify_qslim(
     Raises InvalidInput (an index out of range, a vertex in use that is not finite, not exactly one target),
     TargetUnreachable (with `reachable`).
     """
-    mesh, size = as_geometry(mesh_or_vertices, triangles)._view(), (vertices or 0, faces or 0)
+    mesh, size = as_geometry(mesh_or_vertices, triangles)._view(), _target(vertices, faces)
     with as_callable(progress) as report:
         found = _core.simplify_qslim(mesh, *size, _edges(features), {**options}, threads, report)
     return SimplifiedMesh(**found)
@@ -95,7 +96,7 @@ def simplify_ssim(
     Raises InvalidInput (an index out of range, a vertex in use that is not finite, not exactly one target),
     TargetUnreachable (with `reachable`).
     """
-    mesh, size = as_geometry(mesh_or_vertices, triangles)._view(), (vertices or 0, faces or 0)
+    mesh, size = as_geometry(mesh_or_vertices, triangles)._view(), _target(vertices, faces)
     smooth = None if denoised is None else as_points(denoised, "denoised")
     lines, chosen = _edges(features), _samples(samples)
     with as_callable(progress) as report:
@@ -120,10 +121,17 @@ def simplify_ssim_paper(
     Where topology keeps a vertex, the cheapest sample goes instead, so the count is exact. Parameters and errors as of
     `simplify_ssim`.
     """
-    mesh, size = as_geometry(mesh_or_vertices, triangles)._view(), (vertices or 0, faces or 0)
+    mesh, size = as_geometry(mesh_or_vertices, triangles)._view(), _target(vertices, faces)
     with as_callable(progress) as report:
         found = _core.simplify_ssim_paper(mesh, *size, _samples(samples), _edges(features), threads, report)
     return SimplifiedMesh(**found)
+
+
+def _target(vertices: Optional[int], faces: Optional[int]) -> Tuple[int, int]:
+    for name, count in (("vertices", vertices), ("faces", faces)):
+        if count is not None and count < 1:
+            raise InvalidInput(f"{name}: {count}, expected 1 or more")
+    return vertices or 0, faces or 0
 
 
 def _edges(features: Optional[ArrayLike]) -> NDArray[Any]:
