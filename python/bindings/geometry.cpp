@@ -223,6 +223,13 @@ void bind_data(nb::module_& module) {
       .def_prop_ro(
           "diagonal", [](const InputView& v) { return bounding_box(v.view.positions).diagonal(); },
           "[input length unit] of the bounding box of the finite points.")
+      .def_prop_ro(
+          "bounding_box",
+          [](const InputView& v) {
+            const BoundingBox box = bounding_box(v.view.positions);
+            return nb::make_tuple(to_numpy(box.min), to_numpy(box.max));
+          },
+          "The lowest and the highest corner, of the finite points.")
       .def(
           "select_points",
           [](const InputView& v, const VectorArray<Index>& indices) {

@@ -159,7 +159,7 @@ class RegisterOptions(TypedDict, total=False):
 class RegisterByFicpOptions(TypedDict, total=False):
     """Options of register_by_ficp()."""
 
-    lambda: float
+    lambda_: float
     """Exponent of the inlier fraction. (0.95)"""
     start_lambda: float
     """Where annealing starts; equal to lambda: pure FICP. (3.0)"""

@@ -378,7 +378,7 @@ def prepare_scan(
     """
     geometry = as_geometry(scan)
     with as_callable(progress) as report:
-        ready = _core.prepare_scan(geometry._view(), name, {**options}, threads, report)
+        ready = _core.prepare_scan(geometry._view(attributes=False), name, {**options}, threads, report)
     full, samples = RegistrationCloud._of(ready.full), RegistrationCloud._of(ready.samples)
     return PreparedScan(ready.origin, full, samples, ready.keypoints, scan, geometry, ready)
 

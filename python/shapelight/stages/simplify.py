@@ -62,7 +62,7 @@ def simplify_qslim(
     Raises InvalidInput (an index out of range, a vertex in use that is not finite, not exactly one target),
     TargetUnreachable (with `reachable`).
     """
-    mesh, size = as_geometry(mesh_or_vertices, triangles)._view(), _target(vertices, faces)
+    mesh, size = as_geometry(mesh_or_vertices, triangles)._view(attributes=False), _target(vertices, faces)
     with as_callable(progress) as report:
         found = _core.simplify_qslim(mesh, *size, _edges(features), {**options}, threads, report)
     return SimplifiedMesh(**found)
@@ -96,7 +96,7 @@ def simplify_ssim(
     Raises InvalidInput (an index out of range, a vertex in use that is not finite, not exactly one target),
     TargetUnreachable (with `reachable`).
     """
-    mesh, size = as_geometry(mesh_or_vertices, triangles)._view(), _target(vertices, faces)
+    mesh, size = as_geometry(mesh_or_vertices, triangles)._view(attributes=False), _target(vertices, faces)
     smooth = None if denoised is None else as_points(denoised, "denoised")
     lines, chosen = _edges(features), _samples(samples)
     with as_callable(progress) as report:
@@ -121,7 +121,7 @@ def simplify_ssim_paper(
     Where topology keeps a vertex, the cheapest sample goes instead, so the count is exact. Parameters and errors as of
     `simplify_ssim`.
     """
-    mesh, size = as_geometry(mesh_or_vertices, triangles)._view(), _target(vertices, faces)
+    mesh, size = as_geometry(mesh_or_vertices, triangles)._view(attributes=False), _target(vertices, faces)
     with as_callable(progress) as report:
         found = _core.simplify_ssim_paper(mesh, *size, _samples(samples), _edges(features), threads, report)
     return SimplifiedMesh(**found)
