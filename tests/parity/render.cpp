@@ -40,7 +40,7 @@ void record_render(const Recorder& recorder) {
   const std::vector<NamedDots> dots = {{std::span(fandisk.positions).first(40), ""}};
   const std::vector<RenderItem> panels = make_panels(inputs, colors, dots, {.point = 0.0, .dot = 3.0});
   record_image(recorder, "render_scene", render_scene(panels, options));
-  const Image alone = render(panels[0], options);
+  const Image alone = render(panels[1], options);
   record_image(recorder, "render", alone);
   record_image(recorder, "image_grid", image_grid(std::vector<Image>{alone, alone, alone}, 2, 5, {9, 8, 7}));
   recorder.record("color_by_field", color_by_field(fandisk, "y").colors);

@@ -13,6 +13,7 @@ from ..describe import described
 from ..errors import InvalidInput
 from ..geometry import as_indices, as_points
 from ..interop import GeometryLike, as_geometry
+from ..jobs.quantities import Count, as_count
 from ..progress import Progress, as_callable
 from ..results import Result
 
@@ -44,8 +45,8 @@ def simplify_qslim(
     triangles: Optional[ArrayLike] = None,
     /,
     *,
-    vertices: Optional[int] = None,
-    faces: Optional[int] = None,
+    vertices: Optional[Count] = None,
+    faces: Optional[Count] = None,
     features: Optional[ArrayLike] = None,
     threads: int = 0,
     progress: Progress = None,
@@ -74,8 +75,8 @@ def simplify_ssim(
     triangles: Optional[ArrayLike] = None,
     /,
     *,
-    vertices: Optional[int] = None,
-    faces: Optional[int] = None,
+    vertices: Optional[Count] = None,
+    faces: Optional[Count] = None,
     samples: Optional[ArrayLike] = None,
     denoised: Optional[ArrayLike] = None,
     features: Optional[ArrayLike] = None,
@@ -109,8 +110,8 @@ def simplify_ssim_paper(
     triangles: Optional[ArrayLike] = None,
     /,
     *,
-    vertices: Optional[int] = None,
-    faces: Optional[int] = None,
+    vertices: Optional[Count] = None,
+    faces: Optional[Count] = None,
     samples: ArrayLike,
     features: Optional[ArrayLike] = None,
     threads: int = 0,
@@ -127,11 +128,12 @@ def simplify_ssim_paper(
     return SimplifiedMesh(**found)
 
 
-def _target(vertices: Optional[int], faces: Optional[int]) -> Tuple[int, int]:
-    for name, count in (("vertices", vertices), ("faces", faces)):
+def _target(vertices: Optional[Count], faces: Optional[Count]) -> Tuple[int, int]:
+    counts = {"vertices": as_count("vertices", vertices), "faces": as_count("faces", faces)}
+    for name, count in counts.items():
         if count is not None and count < 1:
             raise InvalidInput(f"{name}: {count}, expected 1 or more")
-    return vertices or 0, faces or 0
+    return counts["vertices"] or 0, counts["faces"] or 0
 
 
 def _edges(features: Optional[ArrayLike]) -> NDArray[Any]:

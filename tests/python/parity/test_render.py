@@ -22,7 +22,7 @@ def fandisk(inputs):
 def test_render(inputs, fandisk, cpp, same_bytes):
     dots = fandisk.positions[:40]
     same_bytes(sl.render(inputs, color=["none", "z"], dots=dots, **OPTIONS).ravel(), cpp("render_scene", np.uint8))
-    alone = sl.render(fandisk, dots=dots, captions=False, **OPTIONS)
+    alone = sl.render(fandisk, color="z", dots=dots, captions=False, **OPTIONS)
     same_bytes(alone.ravel(), cpp("render", np.uint8))
     grid = pictures.image_grid([alone] * 3, columns=2, gap=5, background=(9, 8, 7))
     same_bytes(grid.ravel(), cpp("image_grid", np.uint8))
