@@ -27,10 +27,14 @@ Picture = NDArray[np.uint8]
 """(height, width, 3) red, green, blue; the first row on top."""
 
 
+def _is_point(thing: Any) -> bool:
+    return isinstance(thing, (list, tuple, np.ndarray)) and len(thing) == 3 and all(np.isscalar(x) for x in thing)
+
+
 def _several(things: Any) -> List[Any]:
     """A list of geometries as it is; one geometry, which may be a tuple or a list of points, as a list of one."""
-    is_points = isinstance(things, list) and bool(things) and np.ndim(things[0]) == 1 and len(things[0]) == 3
-    return list(things) if isinstance(things, list) and not is_points else [things]
+    is_list = isinstance(things, list) and not (things and _is_point(things[0]))
+    return list(things) if is_list else [things]
 
 
 def _name(thing: Any) -> str:
