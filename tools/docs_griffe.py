@@ -1,6 +1,6 @@
 """Extension of mkdocstrings: our docstrings as Markdown, and the option tables that functions get when they run.
 
-Aligned lines ("name  what it is") become a table. A function that is @described("table") gets the rows of that table of
+Aligned lines ("name  what it is") become a table, and so do the fields of a dataclass. A function that is @described("table") gets the rows of that table of
 shapelight._core, the same that --help prints.
 """
 
@@ -41,7 +41,15 @@ def options_as_table(rows):
     return "\n".join(lines)
 
 
-class OptionTables(griffe.Extension):
+def fields_as_table(attributes):
+    lines = ["| field | type | meaning |", "| --- | --- | --- |"]
+    for attribute in attributes:
+        meaning = attribute.docstring.value.replace("\n", " ") if attribute.docstring else ""
+        lines.append(f"| `{attribute.name}` | `{attribute.annotation}` | {cell(meaning)} |")
+    return "\n".join(lines)
+
+
+class Tables(griffe.Extension):
     def on_instance(self, *, obj, **kwargs):
         if obj.is_alias or obj.docstring is None:
             return
@@ -53,3 +61,12 @@ class OptionTables(griffe.Extension):
             call = ast.parse(str(decorator.value), mode="eval").body
             if isinstance(call, ast.Call) and getattr(call.func, "id", "") == "described" and func.docstring:
                 func.docstring.value += "\n\n" + options_as_table(option_table(ast.literal_eval(call.args[0])))
+
+    def on_class_members(self, *, cls, **kwargs):
+        if cls.docstring is None or not any("dataclass" in str(decorator.value) for decorator in cls.decorators):
+            return
+        attributes = [member for member in cls.members.values() if member.is_attribute and member.is_public]
+        if missing := [a for a in attributes if f"| `{a.name}` |" not in cls.docstring.value]:
+            cls.docstring.value += "\n\n" + fields_as_table(missing)
+        for attribute in attributes:
+            attribute.docstring = None  # so that it is not shown a second time, by itself

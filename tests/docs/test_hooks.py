@@ -57,3 +57,15 @@ def test_options_are_those_of_the_library(docstrings):
     table = docstrings.options_as_table(docstrings.option_table("sample"))
     assert "| `local_weight` | Share of points chosen for local detail (the paper's T). |  | 0.65 |" in table
     assert "One of `shape`, `random`" in table
+
+
+def test_functions_and_results_of_the_package_get_their_tables(docstrings):
+    import griffe
+
+    extensions = griffe.load_extensions(docstrings.Tables())
+    package = griffe.load("shapelight", search_paths=[str(ROOT / "python")], extensions=extensions)
+    result = package["results.SampleResult"]
+    assert "| `usable` | `int` | Finite points of the input. |" in result.docstring.value
+    assert "| `points` | " in result.docstring.value and result["points"].docstring is None
+    sample = package["sample"].docstring.value
+    assert "| `ratio` | share of the finite points to keep, or |" in sample and "| `local_weight` |" in sample
