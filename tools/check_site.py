@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Checks a built site without a network: links, anchors and pictures within it, and that it loads nothing from elsewhere.
+"""Checks a built site without a network: its links, anchors and pictures, and that it loads nothing from elsewhere.
 
   tools/check_site.py SITE
 

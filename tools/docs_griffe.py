@@ -1,7 +1,7 @@
 """Extension of mkdocstrings: our docstrings as Markdown, and the option tables that functions get when they run.
 
-Aligned lines ("name  what it is") become a table, and so do the fields of a dataclass. A function that is @described("table") gets the rows of that table of
-shapelight._core, the same that --help prints.
+Aligned lines ("name  what it is") become a table, and so do the fields of a dataclass. A function that is
+@described("table") gets the rows of that table of shapelight._core, the same that --help prints.
 """
 
 import ast
@@ -28,7 +28,8 @@ def as_table(paragraph):
             rows[-1][1] += " " + line.strip()
         else:
             return paragraph
-    return "\n".join(["| argument | meaning |", "| --- | --- |", *(f"| `{name}` | {cell(text)} |" for name, text in rows)])
+    cells = [f"| `{name}` | {cell(text)} |" for name, text in rows]
+    return "\n".join(["| argument | meaning |", "| --- | --- |", *cells])
 
 
 def options_as_table(rows):
@@ -36,7 +37,7 @@ def options_as_table(rows):
     for row in rows:
         choices = f" One of {', '.join(f'`{c}`' for c in row['choices'])}." if row["choices"] else ""
         unit = "" if row["unit"] == "1" else row["unit"]
-        default = row["default"] if row["choices"] else f"{row['default']:g}" if row["type"] == "float" else row["default"]
+        default = f"{row['default']:g}" if row["type"] == "float" else row["default"]
         lines.append(f"| `{row['name']}` | {cell(row['meaning'])}{choices} | {unit} | {default} |")
     return "\n".join(lines)
 

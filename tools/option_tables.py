@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Fills the option tables of docs/**/*.md from `shapelight COMMAND --help`, so that they cannot differ from the program.
+"""Fills the option tables of docs/ from `shapelight COMMAND --help`, so that they cannot differ from the program.
 
   tools/option_tables.py [--check] [--shapelight build/release/bin/shapelight]
 
@@ -16,8 +16,8 @@ from pathlib import Path
 
 MARKED = re.compile(r"(<!-- options: (\S+)(?: / ([^>]+?))? -->\n).*?(<!-- end of options -->)", re.DOTALL)
 FLAGS = re.compile(r"^  (?P<flags>-\S.*?)(?:\s{2,}(?P<meaning>\S.*))?$")
-CHOICES = re.compile(r" ([\w-]+(?:\|[\w-]+)+)$")
 EXTRAS = re.compile(r"(?: \[(?P<unit>[^\]]+)\])?(?: \((?P<default>[^()]+)\))?$")
+
 
 
 def parse(text):
@@ -34,20 +34,29 @@ def parse(text):
 
 
 def row(flags, meaning):
-    flags = re.sub(r"\{false\}|:\{.*?\}|:INT in \[.*?\]| REQUIRED| TEXT| \.\.\.", "", flags)
+    flags = re.sub(r"\{false\}|:\{.*?\}|:INT in \[.*?\]| REQUIRED| TEXT| \.\.\.", "", flags).replace("|", "\\|")
     extras = EXTRAS.search(meaning)
     text = meaning[:extras.start()].replace("|", "\\|")
-    if choices := CHOICES.search(flags):  # a | in code ends the cell for some readers of Markdown, whether escaped or not
-        flags = flags[:choices.start()] + " NAME"
-        text += " One of " + ", ".join(f"`{name}`" for name in choices[1].split("|")) + "."
     return f"| `{flags}` | {text} | {extras['unit'] or ''} | {extras['default'] or ''} |"
+
+
+CHOICES = re.compile(r" ([\w-]+(?:\|[\w-]+)+)$")
+
+
+def in_words(flags, meaning):
+    """Choices are named in the meaning: a | in code ends the cell for some readers of Markdown, escaped or not."""
+    if not (choices := CHOICES.search(flags)):
+        return flags, meaning
+    names = ", ".join(f"`{name}`" for name in choices[1].split("|"))
+    extras = EXTRAS.search(meaning)
+    return f"{flags[:choices.start()]} NAME", f"{meaning[:extras.start()]} One of {names}.{extras[0]}"
 
 
 def table(shapelight, command, group):
     done = subprocess.run([shapelight, command, "--help"], capture_output=True, text=True, check=True)
     groups = parse(done.stdout)
     wanted = [group] if group else [name for name in groups if name != "Positionals"]
-    rows = [row(*option) for name in wanted for option in groups[name] if "--help" not in option[0]]
+    rows = [row(*in_words(*option)) for name in wanted for option in groups[name] if "--help" not in option[0]]
     return "\n".join(["| option | meaning | unit | default |", "| --- | --- | --- | --- |", *rows]) + "\n"
 
 

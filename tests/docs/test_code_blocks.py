@@ -71,7 +71,8 @@ def test_blocks_are_found():
 
 
 def test_errors_stop_a_page(tmp_path):
-    for number, block in enumerate(("```bash\nfalse\ntrue\n```\n", "```python\n1 / 0\n```\n", "```sh\n./absent.sh\n```\n")):
+    wrong = ("```bash\nfalse\ntrue\n```\n", "```python\n1 / 0\n```\n", "```sh\n./absent.sh\n```\n")
+    for number, block in enumerate(wrong):
         page = tmp_path / f"{number}.md"
         page.write_text(block)
         done = subprocess.run([sys.executable, ROOT / "tools/docs_blocks.py", page, tmp_path / str(number)],

@@ -49,7 +49,8 @@ def test_names_that_no_group_has_are_appended(hooks):
 
 def test_aligned_lines_become_a_table(docstrings):
     table = docstrings.as_table("count   [points] to keep, or\nratio   share to keep: a|b,\n        rounded")
-    assert table.splitlines()[2:] == ["| `count` | [points] to keep, or |", "| `ratio` | share to keep: a\\|b, rounded |"]
+    rows = ["| `count` | [points] to keep, or |", "| `ratio` | share to keep: a\\|b, rounded |"]
+    assert table.splitlines()[2:] == rows
     assert docstrings.as_table("Two lines of\nplain text.") == "Two lines of\nplain text."
 
 
