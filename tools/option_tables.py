@@ -19,7 +19,6 @@ FLAGS = re.compile(r"^  (?P<flags>-\S.*?)(?:\s{2,}(?P<meaning>\S.*))?$")
 EXTRAS = re.compile(r"(?: \[(?P<unit>[^\]]+)\])?(?: \((?P<default>[^()]+)\))?$")
 
 
-
 def parse(text):
     """{heading: [[flags, meaning], ...]} of a help text; a meaning may stand on the line below its flags."""
     groups, rows = {}, []
