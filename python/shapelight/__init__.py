@@ -4,6 +4,7 @@
     kept = sl.sample(points, ratio=0.1).indices
 """
 
+from . import stages
 from ._core import __version__
 from .errors import (
     BudgetExceeded,
@@ -41,6 +42,7 @@ __all__ = [
     "read_transform",
     "register_format",
     "sample",
+    "stages",
     "write",
     "write_transform",
 ]

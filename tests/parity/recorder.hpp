@@ -48,5 +48,10 @@ class Recorder {
 
 // One per source file.
 void record_jobs(const Recorder& recorder);
+void record_graph(const Recorder& recorder);
+void record_features(const Recorder& recorder);
+void record_samplers(const Recorder& recorder);
+void record_spatial(const Recorder& recorder);
+void record_metrics(const Recorder& recorder);
 
 }  // namespace shapelight::parity
