@@ -98,11 +98,9 @@ GeometryKind kind_named(const std::string& name) {
   throw InvalidInput(fmt::format("kind: '{}', expected one of 'mesh', 'range_image', 'cloud'", name));
 }
 
-nb::dict all_fields(const BuiltGraph& built, const std::string& kind, nb::str preset, const nb::dict& given,
+nb::dict all_fields(const BuiltGraph& built, const std::string& kind, const std::string& preset, const nb::dict& given,
                     int threads, nb::object progress) {
-  Preset chosen{};
-  set_option(OptionInfo{"preset", "", ""}, preset, chosen);
-  FieldsOptions options = fields_preset(chosen);
+  FieldsOptions options = fields_preset(enum_named<Preset>("preset", preset));
   apply_options(options, given);
   SurfaceFields fields = run({threads, progress}, [&, kind = kind_named(kind)](const RunContext& context) {
     return compute_fields(built.graph, kind, options, context);

@@ -15,20 +15,10 @@ namespace {
 
 nb::dict sampling(const PointsArray& reference, const PointsArray& samples,
                   const std::optional<VectorArray<double>>& importance, int threads, nb::object progress) {
-  const SamplingQuality q = run({threads, progress}, [&](const RunContext& context) {
+  return to_dict(run({threads, progress}, [&](const RunContext& context) {
     return measure_sampling(as_span(reference), importance ? as_span(*importance) : std::span<const double>{},
                             as_span(samples), context);
-  });
-  nb::dict d;
-  d["coverage_max"] = q.coverage_max;
-  d["coverage_mean"] = q.coverage_mean;
-  d["feature_coverage_mean"] = q.feature_coverage_mean;
-  d["feature_coverage_max"] = q.feature_coverage_max;
-  d["feature_share"] = q.feature_share;
-  d["spacing_mean"] = q.spacing_mean;
-  d["spacing_min"] = q.spacing_min;
-  d["spacing_cv"] = q.spacing_cv;
-  return d;
+  }));
 }
 
 nb::object variation(const PointsArray& points, std::size_t k, int threads, nb::object progress) {
@@ -36,32 +26,12 @@ nb::object variation(const PointsArray& points, std::size_t k, int threads, nb::
                       [&](const RunContext& context) { return surface_variation_knn(as_span(points), k, context); }));
 }
 
-nb::dict to_dict(const DistanceSummary& summary) {
-  nb::dict d;
-  d["mean"] = summary.mean;
-  d["rms"] = summary.rms;
-  d["max"] = summary.max;
-  return d;
-}
-
 nb::dict surface_distance(const InputView& reference, const InputView& test, const nb::dict& given, int threads,
                           nb::object progress) {
   const auto options = make_options<SurfaceDistanceOptions>(given);
-  const SurfaceDistance found = run({threads, progress}, [&](const RunContext& context) {
+  return to_dict(run({threads, progress}, [&](const RunContext& context) {
     return measure_surface_distance(reference.mesh(), test.mesh(), options, context);
-  });
-  nb::dict deviation;
-  deviation["rms"] = found.normal_deviation.rms;
-  deviation["p95"] = found.normal_deviation.p95;
-  nb::dict d;
-  d["forward"] = to_dict(found.forward);
-  d["backward"] = to_dict(found.backward);
-  d["symmetric"] = to_dict(found.symmetric);
-  d["vertex_rms"] = found.vertex_rms;
-  d["diagonal"] = found.diagonal;
-  d["normal_deviation"] = deviation;
-  d["samples"] = found.samples;
-  return d;
+  }));
 }
 
 nb::object distances(const InputView& mesh, const TriangleTree& surface, int threads, nb::object progress) {

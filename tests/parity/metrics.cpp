@@ -1,3 +1,5 @@
+#include <numbers>
+
 #include "recorder.hpp"
 #include "shapelight/metrics/sampling_quality.hpp"
 #include "shapelight/metrics/surface_distance.hpp"
@@ -21,9 +23,10 @@ void record_metrics(const Recorder& recorder) {
     moved.push_back(1.25 * mesh.positions[i]);
   }
   const SamplingQuality q = measure_sampling(mesh.positions, importance, samples);
-  recorder.record("measure_sampling",
-                  std::vector<double>{q.coverage_max, q.coverage_mean, q.feature_coverage_mean, q.feature_coverage_max,
-                                      q.feature_share, q.spacing_mean, q.spacing_min, q.spacing_cv});
+  recorder.record("measure_sampling.coverage", std::vector<double>{q.coverage_max, q.coverage_mean});
+  recorder.record("measure_sampling.feature",
+                  std::vector<double>{q.feature_coverage_max, q.feature_coverage_mean, q.feature_share});
+  recorder.record("measure_sampling.spacing", std::vector<double>{q.spacing_mean, q.spacing_min, q.spacing_cv});
   recorder.record("surface_variation_knn", surface_variation_knn(mesh.positions, 12));
 
   const TriangleMesh reference{mesh.positions, mesh.triangles};
@@ -34,8 +37,9 @@ void record_metrics(const Recorder& recorder) {
   record_summary(recorder, "symmetric", d.symmetric);
   recorder.record("measure_surface_distance.vertex_rms", d.vertex_rms);
   recorder.record("measure_surface_distance.diagonal", d.diagonal);
-  recorder.record("measure_surface_distance.normal_deviation",
-                  std::vector<double>{d.normal_deviation.rms, d.normal_deviation.p95});
+  constexpr double kDegrees = 180.0 / std::numbers::pi;
+  recorder.record("measure_surface_distance.normal_deviation_deg",
+                  std::vector<double>{d.normal_deviation.rms * kDegrees, d.normal_deviation.p95 * kDegrees});
   recorder.record("measure_surface_distance.samples", d.samples);
   recorder.record("vertex_distances", vertex_distances(reference, TriangleTree(test)));
 }

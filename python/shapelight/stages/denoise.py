@@ -42,7 +42,7 @@ def non_local_means(
     """
     values, tangents = as_field(field, "field"), as_points(direction1, "direction1")
     with as_callable(progress) as report:
-        return np.asarray(_core.non_local_means(graph, values, tangents, options, threads, report))
+        return np.asarray(_core.non_local_means(graph, values, tangents, {**options}, threads, report))
 
 
 @described("smooth_positions")
@@ -59,4 +59,4 @@ def smooth_positions(
     Raises InvalidInput (option out of range).
     """
     with as_callable(progress) as report:
-        return np.asarray(_core.smooth_positions(graph, options, threads, report))
+        return np.asarray(_core.smooth_positions(graph, {**options}, threads, report))

@@ -61,7 +61,7 @@ def estimate_curvatures(
     Raises InvalidInput (option out of range).
     """
     with as_callable(progress) as report:
-        return Curvatures(**_core.estimate_curvatures(graph, options, threads, report))
+        return Curvatures(**_core.estimate_curvatures(graph, {**options}, threads, report))
 
 
 def curvedness(k1: ArrayLike, k2: ArrayLike) -> NDArray[np.float64]:
@@ -89,7 +89,7 @@ def compute_shape_index(
     """
     k1, k2 = as_field(curvatures.k1, "k1"), as_field(curvatures.k2, "k2")
     with as_callable(progress) as report:
-        return np.asarray(_core.compute_shape_index(graph, k1, k2, sigma, options, threads, report))
+        return np.asarray(_core.compute_shape_index(graph, k1, k2, sigma, {**options}, threads, report))
 
 
 @described("compute_surface_variation")
@@ -103,7 +103,7 @@ def compute_surface_variation(
     """(n,) surface variation (Pauly et al. 2002): the smallest eigenvalue's share of the covariance of the points
     around a vertex, 0 on a plane, at most 1/3. Raises InvalidInput (option out of range)."""
     with as_callable(progress) as report:
-        return np.asarray(_core.compute_surface_variation(graph, options, threads, report))
+        return np.asarray(_core.compute_surface_variation(graph, {**options}, threads, report))
 
 
 def estimate_noise(graph: SurfaceGraph, *, threads: int = 0, progress: Progress = None) -> float:

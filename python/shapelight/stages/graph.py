@@ -34,7 +34,7 @@ __all__ = [
 
 def _grid_geometry(positions: ArrayLike, grid: ArrayLike, viewpoint: Optional[ArrayLike]) -> _core.GeometryView:
     pixels = as_indices(grid, "grid", (-1, -1))
-    return Geometry(as_points(positions, "positions"), grid=pixels, viewpoint=viewpoint)._view()  # type: ignore[arg-type]
+    return Geometry(as_points(positions, "positions"), grid=pixels, viewpoint=viewpoint)._view(attributes=False)  # type: ignore[arg-type]
 
 
 @described("build_graph")
@@ -53,9 +53,9 @@ def build_graph(
 
     Raises InvalidInput (option out of range, a triangle names a vertex that is not there).
     """
-    view = as_geometry(points_or_mesh, faces)._view()
+    view = as_geometry(points_or_mesh, faces)._view(attributes=False)
     with as_callable(progress) as report:
-        return _core.build_graph(view, options, threads, report)
+        return _core.build_graph(view, {**options}, threads, report)
 
 
 def graph_from_mesh(
@@ -66,7 +66,7 @@ def graph_from_mesh(
 
     Raises InvalidInput when a triangle names a vertex that is not there.
     """
-    view = Geometry(as_points(positions, "positions"), as_indices(triangles, "triangles", (-1, 3)))._view()
+    view = Geometry(as_points(positions, "positions"), as_indices(triangles, "triangles", (-1, 3)))._view(attributes=False)
     with as_callable(progress) as report:
         return _core.graph_from_mesh(view, {}, threads, report)
 
@@ -91,7 +91,7 @@ def graph_from_range_image(
     """
     view = _grid_geometry(positions, grid, viewpoint)
     with as_callable(progress) as report:
-        return _core.graph_from_range_image(view, options, threads, report)
+        return _core.graph_from_range_image(view, {**options}, threads, report)
 
 
 @described("build_graph")
@@ -108,14 +108,14 @@ def graph_from_points(
 
     Raises InvalidInput (option out of range).
     """
-    view = Geometry(as_points(positions, "positions"), viewpoint=viewpoint)._view()  # type: ignore[arg-type]
+    view = Geometry(as_points(positions, "positions"), viewpoint=viewpoint)._view(attributes=False)  # type: ignore[arg-type]
     with as_callable(progress) as report:
-        return _core.graph_from_points(view, options, threads, report)
+        return _core.graph_from_points(view, {**options}, threads, report)
 
 
 def graph_of_places(positions: ArrayLike, *, threads: int = 0, progress: Progress = None) -> SurfaceGraph:
     """Vertices without edges, normals or areas, for samplers that look at (n, 3) positions only."""
-    view = Geometry(as_points(positions, "positions"))._view()
+    view = Geometry(as_points(positions, "positions"))._view(attributes=False)
     with as_callable(progress) as report:
         return _core.graph_of_places(view, {}, threads, report)
 

@@ -48,4 +48,4 @@ def decompose_retinex(
     Raises InvalidInput (names option or vertex; wrong length).
     """
     with as_callable(progress) as report:
-        return RetinexResult(**_core.decompose_retinex(graph, as_field(field, "field"), options, threads, report))
+        return RetinexResult(**_core.decompose_retinex(graph, as_field(field, "field"), {**options}, threads, report))

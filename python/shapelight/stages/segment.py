@@ -46,4 +46,4 @@ def segment_field(
     Raises InvalidInput (names option or vertex; wrong length).
     """
     with as_callable(progress) as report:
-        return SegmentationResult(**_core.segment_field(graph, as_field(field, "field"), options, threads, report))
+        return SegmentationResult(**_core.segment_field(graph, as_field(field, "field"), {**options}, threads, report))

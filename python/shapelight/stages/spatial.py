@@ -124,7 +124,7 @@ class TriangleTree:
         progress: Progress = None,
     ) -> None:
         with as_callable(progress) as report:
-            self._tree = _core.make_triangle_tree(as_geometry(mesh, faces)._view(), threads, report)
+            self._tree = _core.make_triangle_tree(as_geometry(mesh, faces)._view(attributes=False), threads, report)
 
     def __len__(self) -> int:
         return len(self._tree)

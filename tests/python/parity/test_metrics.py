@@ -21,8 +21,11 @@ def moved(mesh):
 
 def test_measure_sampling(mesh, cpp, same_bytes):
     importance = np.arange(len(mesh)) % 11
-    quality = stages.measure_sampling(mesh.positions, mesh.positions[::9], importance)
-    same_bytes(np.array(dataclasses.astuple(quality)), cpp("measure_sampling", np.float64))
+    q = stages.measure_sampling(mesh.positions, mesh.positions[::9], importance)
+    same_bytes(np.array([q.coverage_max, q.coverage_mean]), cpp("measure_sampling.coverage", np.float64))
+    feature = [q.feature_coverage_max, q.feature_coverage_mean, q.feature_share]
+    same_bytes(np.array(feature), cpp("measure_sampling.feature", np.float64))
+    same_bytes(np.array([q.spacing_mean, q.spacing_min, q.spacing_cv]), cpp("measure_sampling.spacing", np.float64))
 
 
 def test_surface_variation_knn(mesh, cpp, same_bytes):
@@ -31,7 +34,7 @@ def test_surface_variation_knn(mesh, cpp, same_bytes):
 
 def test_measure_surface_distance(mesh, moved, cpp, same_bytes):
     found = stages.measure_surface_distance(mesh, moved, samples=5000, seed=3)
-    for name in ("forward", "backward", "symmetric", "normal_deviation"):
+    for name in ("forward", "backward", "symmetric", "normal_deviation_deg"):
         figures = np.array(dataclasses.astuple(getattr(found, name)))
         same_bytes(figures, cpp(f"measure_surface_distance.{name}", np.float64))
     for name in ("vertex_rms", "diagonal"):
