@@ -76,7 +76,7 @@ void bind_kd_tree(nb::module_& module) {
           nb::arg("k"), nb::arg("threads"), nb::arg("progress").none());
 }
 
-nb::object closest(const TriangleTree& tree, const PointsArray& queries, int threads, nb::object progress) {
+nb::tuple closest(const TriangleTree& tree, const PointsArray& queries, int threads, nb::object progress) {
   const std::vector<TriangleTree::Hit> hits =
       run({threads, progress}, [&](const RunContext& context) { return tree.closest(as_span(queries), context); });
   std::vector<Index> triangles;
@@ -90,8 +90,8 @@ nb::object closest(const TriangleTree& tree, const PointsArray& queries, int thr
   return nb::make_tuple(distances_of(hits, {hits.size()}), to_numpy(std::move(triangles)), to_numpy(std::move(points)));
 }
 
-nb::object first_hit(const TriangleTree& tree, const PointsArray& origins, const PointsArray& directions, int threads,
-                     nb::object progress) {
+nb::tuple first_hit(const TriangleTree& tree, const PointsArray& origins, const PointsArray& directions, int threads,
+                    nb::object progress) {
   const std::vector<TriangleTree::RayHit> hits = run({threads, progress}, [&](const RunContext& context) {
     return first_hits(tree, as_span(origins), as_span(directions), context);
   });
