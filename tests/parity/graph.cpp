@@ -39,7 +39,7 @@ void record_graph(const Recorder& recorder) {
   record_all(recorder, "graph_from_range_image",
              graph_from_range_image(scan.positions, *scan.grid, Vec3(0.0, 0.0, 2.0), {.depth_jump = 4.0}));
   record_all(recorder, "graph_from_points",
-             graph_from_points(cloud.positions, cloud.positions[0], {.flag_outliers = false}));
+             graph_from_points(cloud.positions, cloud.positions[0], {.neighbors = 7, .flag_outliers = false}));
   record_all(recorder, "graph_of_places", graph_of_places(cloud.positions));
   recorder.record("range_image_triangles", range_image_triangles(scan.positions, *scan.grid, Vec3(0.0, 0.0, 2.0), 4.0));
   const BuiltGraph built = build_graph(mesh);

@@ -67,7 +67,7 @@ def test_graph_from_range_image(scan, same_graph):
 
 
 def test_graph_from_points(cloud, same_graph):
-    graph = stages.graph_from_points(cloud.positions, cloud.positions[0], flag_outliers=False)
+    graph = stages.graph_from_points(cloud.positions, cloud.positions[0], neighbors=7, flag_outliers=False)
     same_graph(graph, "graph_from_points")
 
 
