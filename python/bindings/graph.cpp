@@ -112,7 +112,7 @@ void bind_ring_collector(nb::module_& module) {
             if (limit == std::size_t{0}) throw InvalidInput("limit: 0, expected at least 1 vertex");
             const std::size_t most = std::min(limit.value_or(rings.graph.size()), rings.graph.size());
             const auto found = rings.collector.collect(static_cast<Index>(center), num_rings, most);
-            return to_numpy(std::vector<Index>(found.begin(), found.end()));
+            return nb::cast<VectorView<Index>>(to_numpy(std::vector<Index>(found.begin(), found.end())));
           },
           nb::arg("center"), nb::arg("rings"), nb::arg("limit") = nb::none(),
           "Vertices within `rings` steps of `center`, itself first, then ring by ring; at most `limit` in all.");

@@ -32,7 +32,7 @@ void record_samplers(const Recorder& recorder) {
   recorder.record("sample_voxel.spacing", sample_voxel(graph, all, spacing));
   recorder.record("sample_stratified.count", sample_stratified(graph, even, count, {.suppression = 0.2}));
   recorder.record("sample_stratified.spacing", sample_stratified(graph, all, spacing, {.seed = 7}));
-  recorder.record("sample_poisson.count", sample_poisson(graph, even, count, {.passes = 1}));
+  recorder.record("sample_poisson.count", sample_poisson(graph, even, count, {.seed = 7, .passes = 1}));
   recorder.record("sample_poisson.spacing", sample_poisson(graph, all, spacing, {.seed = 7}));
   recorder.record("sample_normal_space", sample_normal_space(graph, even, count, {.collars = 5}));
   recorder.record("sample_covariance", sample_covariance(graph, even, count));

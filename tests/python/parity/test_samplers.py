@@ -32,7 +32,7 @@ def signed_field(graph):
         ("sample_random", {"seed": 7, "random_area_weighted": True}),
         ("sample_voxel.count", {"voxel_fill_share": 0.3}),
         ("sample_stratified.count", {"stratified_suppression": 0.2}),
-        ("sample_poisson.count", {"poisson_passes": 1}),
+        ("sample_poisson.count", {"seed": 7, "poisson_passes": 1}),
         ("sample_normal_space", {"normal_collars": 5}),
         ("sample_covariance", {}),
         ("sample_farthest.count", {}),
