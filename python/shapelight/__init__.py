@@ -20,6 +20,7 @@ from .files import formats, read, read_transform, register_format, write, write_
 from .geometry import Geometry
 from .interop import as_geometry
 from .jobs import align, fields, metrics, register, sample, simplify
+from .pictures import render, write_png
 from .results import (
     AlignedPair,
     AlignedScan,
@@ -67,9 +68,11 @@ __all__ = [
     "read_transform",
     "register",
     "register_format",
+    "render",
     "sample",
     "simplify",
     "stages",
     "write",
+    "write_png",
     "write_transform",
 ]

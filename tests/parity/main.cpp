@@ -14,4 +14,8 @@ int main(int argc, char** argv) {
   shapelight::parity::record_samplers(recorder);
   shapelight::parity::record_spatial(recorder);
   shapelight::parity::record_metrics(recorder);
+  shapelight::parity::record_simplify(recorder);
+  shapelight::parity::record_registration(recorder);
+  shapelight::parity::record_synthetic(recorder);
+  shapelight::parity::record_render(recorder);
 }

@@ -53,5 +53,9 @@ void record_features(const Recorder& recorder);
 void record_samplers(const Recorder& recorder);
 void record_spatial(const Recorder& recorder);
 void record_metrics(const Recorder& recorder);
+void record_simplify(const Recorder& recorder);
+void record_registration(const Recorder& recorder);
+void record_synthetic(const Recorder& recorder);
+void record_render(const Recorder& recorder);
 
 }  // namespace shapelight::parity

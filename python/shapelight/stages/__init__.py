@@ -9,16 +9,34 @@ Stages take and return one value per vertex of a SurfaceGraph. `values[graph.ver
 points of the input, where all are finite; `graph.global_id[vertices]` are the input indices of vertices.
 """
 
-from . import denoise, features, graph, metrics, pipeline, retinex, sample, segment, spatial
+from . import (
+    denoise,
+    features,
+    graph,
+    metrics,
+    pipeline,
+    pose_graph,
+    registration,
+    retinex,
+    sample,
+    segment,
+    simplify,
+    spatial,
+    synthetic,
+)
 from .denoise import *
 from .features import *
 from .graph import *
 from .metrics import *
 from .pipeline import *
+from .pose_graph import *
+from .registration import *
 from .retinex import *
 from .sample import *
 from .segment import *
+from .simplify import *
 from .spatial import *
+from .synthetic import *
 
 __all__ = [
     *denoise.__all__,
@@ -26,8 +44,12 @@ __all__ = [
     *graph.__all__,
     *metrics.__all__,
     *pipeline.__all__,
+    *pose_graph.__all__,
+    *registration.__all__,
     *retinex.__all__,
     *sample.__all__,
     *segment.__all__,
+    *simplify.__all__,
     *spatial.__all__,
+    *synthetic.__all__,
 ]
