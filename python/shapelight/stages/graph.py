@@ -34,7 +34,12 @@ __all__ = [
 
 def _grid_geometry(positions: ArrayLike, grid: ArrayLike, viewpoint: Optional[ArrayLike]) -> _core.GeometryView:
     pixels = as_indices(grid, "grid", (-1, -1))
-    return Geometry(as_points(positions, "positions"), grid=pixels, viewpoint=viewpoint)._view(attributes=False)  # type: ignore[arg-type]
+    geometry = Geometry(as_points(positions, "positions"), grid=pixels, viewpoint=_as_viewpoint(viewpoint))
+    return geometry._view(attributes=False)
+
+
+def _as_viewpoint(viewpoint: Optional[ArrayLike]) -> Optional[NDArray[np.float64]]:
+    return None if viewpoint is None else as_points(np.atleast_2d(viewpoint), "viewpoint")[0]
 
 
 @described("build_graph")
@@ -66,7 +71,8 @@ def graph_from_mesh(
 
     Raises InvalidInput when a triangle names a vertex that is not there.
     """
-    view = Geometry(as_points(positions, "positions"), as_indices(triangles, "triangles", (-1, 3)))._view(attributes=False)
+    geometry = Geometry(as_points(positions, "positions"), as_indices(triangles, "triangles", (-1, 3)))
+    view = geometry._view(attributes=False)
     with as_callable(progress) as report:
         return _core.graph_from_mesh(view, {}, threads, report)
 
@@ -108,7 +114,8 @@ def graph_from_points(
 
     Raises InvalidInput (option out of range).
     """
-    view = Geometry(as_points(positions, "positions"), viewpoint=viewpoint)._view(attributes=False)  # type: ignore[arg-type]
+    geometry = Geometry(as_points(positions, "positions"), viewpoint=_as_viewpoint(viewpoint))
+    view = geometry._view(attributes=False)
     with as_callable(progress) as report:
         return _core.graph_from_points(view, {**options}, threads, report)
 
