@@ -4,6 +4,7 @@
     kept = sl.sample(points, ratio=0.1).indices
 """
 
+from . import stages
 from ._core import __version__
 from .errors import (
     BudgetExceeded,
@@ -70,6 +71,7 @@ __all__ = [
     "render",
     "sample",
     "simplify",
+    "stages",
     "write",
     "write_png",
     "write_transform",
