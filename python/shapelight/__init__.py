@@ -15,8 +15,9 @@ from .errors import (
     TargetUnreachable,
     WriteError,
 )
-from .files import formats, read, read_transform, register_format, write, write_transform
-from .geometry import Geometry
+from .files import formats, iter_chunks, read, read_transform, register_format, write, write_transform
+from .formats import register_extras
+from .geometry import Geometry, concatenate
 from .interop import as_geometry
 from .jobs import fields, sample
 from .results import FieldsResult, SampleResult
@@ -35,8 +36,10 @@ __all__ = [
     "WriteError",
     "__version__",
     "as_geometry",
+    "concatenate",
     "fields",
     "formats",
+    "iter_chunks",
     "read",
     "read_transform",
     "register_format",
@@ -44,3 +47,5 @@ __all__ = [
     "write",
     "write_transform",
 ]
+
+register_extras()
