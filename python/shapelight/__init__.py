@@ -15,15 +15,30 @@ from .errors import (
     TargetUnreachable,
     WriteError,
 )
+from .extras import register_extras
 from .files import formats, iter_chunks, read, read_transform, register_format, write, write_transform
-from .formats import register_extras
 from .geometry import Geometry, concatenate
 from .interop import as_geometry
-from .jobs import fields, sample
-from .results import FieldsResult, SampleResult
+from .jobs import align, fields, metrics, register, sample, simplify
+from .results import (
+    AlignedPair,
+    AlignedScan,
+    AlignResult,
+    DistanceSummary,
+    FieldsResult,
+    RegisterResult,
+    SampleResult,
+    SamplingQuality,
+    SimplifyResult,
+    SurfaceDistance,
+)
 
 __all__ = [
+    "AlignResult",
+    "AlignedPair",
+    "AlignedScan",
     "BudgetExceeded",
+    "DistanceSummary",
     "Error",
     "FieldsResult",
     "FormatError",
@@ -31,19 +46,27 @@ __all__ = [
     "InvalidInput",
     "PostconditionFailed",
     "ReadError",
+    "RegisterResult",
     "SampleResult",
+    "SamplingQuality",
+    "SimplifyResult",
+    "SurfaceDistance",
     "TargetUnreachable",
     "WriteError",
     "__version__",
+    "align",
     "as_geometry",
     "concatenate",
     "fields",
     "formats",
     "iter_chunks",
+    "metrics",
     "read",
     "read_transform",
+    "register",
     "register_format",
     "sample",
+    "simplify",
     "write",
     "write_transform",
 ]

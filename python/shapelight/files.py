@@ -50,7 +50,7 @@ def iter_chunks(path: Path, size: int = 1_000_000) -> Iterator[Geometry]:
     if size < 1:
         raise InvalidInput(f"size: {size}, expected at least 1")
     try:
-        from .formats import las
+        from .extras import las
     except ImportError as error:
         raise ImportError("reading in chunks needs laspy and lazrs: pip install shapelight[las]") from error
     return (chunk for chunk, _ in las.chunks(name, size))

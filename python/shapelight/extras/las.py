@@ -22,6 +22,7 @@ from ..geometry import NO_INDEX, Geometry, LasInfo
 logging.getLogger("laspy").addHandler(logging.NullHandler())  # it logs, and then raises, the same
 
 CHUNK = 100_000  # points between two looks for Ctrl-C
+MOST_PER_CHUNK = 10_000_000  # points; 50,000 is usual
 OUR_NAMES = {
     "key_point": "keypoint",
     "scan_angle_rank": "scan_angle",
@@ -102,6 +103,7 @@ def chunks(path: str, size: int) -> Iterator[Tuple[Geometry, int]]:
             count = reader.header.point_count
             if not 0 < count < NO_INDEX:
                 raise FormatError(f"laz: {path}: header: {count} points, expected 1 to {NO_INDEX - 1}")
+            _check_table(file, reader.header)
             file.seek(0)
             layout = _Layout(file.read(reader.header.offset_to_point_data), reader.header)
             file.seek(reader.header.offset_to_point_data)
@@ -118,6 +120,35 @@ def chunks(path: str, size: int) -> Iterator[Tuple[Geometry, int]]:
     except BaseException as error:  # panics of lazrs derive from nothing less
         place = "header" if reader is None else f"behind point {reader.points_read}"
         raise FormatError(f"laz: {path}: {place}: {error}") from error
+
+
+def _check_table(file: BinaryIO, header: Any) -> None:
+    """What lazrs believes, and takes memory for, before it looks at the chunks."""
+    if not header.are_points_compressed:
+        return
+    scheme = lazrs.LazVlr(header.vlrs.get("LasZipVlr")[0].record_data)
+    stride, start, size = header.point_format.size, header.offset_to_point_data, os.fstat(file.fileno()).st_size
+    if scheme.item_size() != stride:
+        raise ValueError(f"compressed records of {scheme.item_size()} bytes, expected {stride}")
+    if not scheme.uses_variable_size_chunks() and not 0 < scheme.chunk_size() <= MOST_PER_CHUNK:
+        raise ValueError(f"chunks of {scheme.chunk_size()} points, expected 1 to {MOST_PER_CHUNK}")
+    end = _at(file, "<q", start)
+    if end == -1:
+        end = _at(file, "<q", size - 8)
+    if not start + 8 <= end <= size - 8:
+        raise ValueError(f"table of chunks at byte {end}, expected {start + 8} to {size - 8}")
+    number = _at(file, "<I", end + 4)
+    if number > (end - start) // stride:  # a chunk begins with a whole point
+        raise ValueError(f"byte {end}: {number} chunks do not fit into {end - start} bytes")
+    file.seek(start)
+    table = lazrs.read_chunk_table(file, scheme)
+    if sum(length for _, length in table) > end - start or sum(points for points, _ in table) < header.point_count:
+        raise ValueError(f"byte {end}: the chunks do not hold {header.point_count} points in {end - start} bytes")
+
+
+def _at(file: BinaryIO, kind: str, offset: int) -> int:
+    file.seek(offset)
+    return int(struct.unpack(kind, file.read(struct.calcsize(kind)))[0])
 
 
 def from_laspy(las: Any) -> Geometry:
