@@ -18,7 +18,7 @@ from .errors import (
 from .extras import register_extras
 from .files import formats, iter_chunks, read, read_transform, register_format, write, write_transform
 from .geometry import Geometry, concatenate
-from .interop import as_geometry
+from .interop import as_geometry, to_laspy, to_open3d, to_pyvista, to_trimesh
 from .jobs import align, fields, metrics, register, sample, simplify
 from .results import (
     AlignedPair,
@@ -67,6 +67,10 @@ __all__ = [
     "register_format",
     "sample",
     "simplify",
+    "to_laspy",
+    "to_open3d",
+    "to_pyvista",
+    "to_trimesh",
     "write",
     "write_transform",
 ]

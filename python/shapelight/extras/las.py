@@ -35,6 +35,7 @@ OUR_NAMES = {
     "z_t": "wave_dz",
 }
 # Of the public header block (ASPRS LAS 1.4 R15) and of a variable length record. [bytes]
+MIN_HEADER = 227
 HEADER_SIZE, POINT_FORMAT, SCALE_AND_OFFSET = 94, 104, 131  # the first is followed by start and number of records
 VLR_HEADER, VLR_USER, VLR_SIZE = 54, 2, 20
 OF_COMPRESSION = (b"laszip encoded", b"copc")
@@ -97,17 +98,20 @@ def _compress(source: BinaryIO, target: BinaryIO, context: _core.RunContext) -> 
 
 def chunks(path: str, size: int) -> Iterator[Tuple[Geometry, int]]:
     """The points in the order of the file, `size` at a time, and the number of all of them."""
-    reader: Any = None
+    place = "header"
     try:
-        with open(path, "rb") as file, laspy.LasReader(file, closefd=False, read_evlrs=False) as reader:
+        with open(path, "rb") as file:
+            head = _head(file)
+            reader = laspy.LasReader(file, closefd=False, read_evlrs=False)
             count = reader.header.point_count
             if not 0 < count < NO_INDEX:
-                raise FormatError(f"laz: {path}: header: {count} points, expected 1 to {NO_INDEX - 1}")
-            _check_table(file, reader.header)
-            file.seek(0)
-            layout = _Layout(file.read(reader.header.offset_to_point_data), reader.header)
+                raise ValueError(f"{count} points, expected 1 to {NO_INDEX - 1}")
+            if reader.header.are_points_compressed:
+                _check_table(file, reader.header)
+            layout = _Layout(head, reader.header)
             file.seek(reader.header.offset_to_point_data)
             while reader.points_read < count:
+                place = f"behind point {reader.points_read}"
                 expected = min(size, count - reader.points_read)
                 chunk = layout.geometry(reader.read_points(size))
                 if len(chunk) < expected:
@@ -118,14 +122,25 @@ def chunks(path: str, size: int) -> Iterator[Tuple[Geometry, int]]:
     except OSError as error:
         raise ReadError(f"laz: {path}: {error}") from error
     except BaseException as error:  # panics of lazrs derive from nothing less
-        place = "header" if reader is None else f"behind point {reader.points_read}"
         raise FormatError(f"laz: {path}: {place}: {error}") from error
+
+
+def _head(file: BinaryIO) -> bytes:
+    """Everything before the points. laspy believes the number of records, whatever the room for them."""
+    start = file.read(MIN_HEADER)
+    if len(start) < MIN_HEADER or start[:4] != b"LASF":
+        raise ValueError(f"not a LAS file, expected LASF and {MIN_HEADER} bytes or more")
+    size, points, number = struct.unpack_from("<HII", start, HEADER_SIZE)
+    if not MIN_HEADER <= size <= points <= os.fstat(file.fileno()).st_size or number > (points - size) // VLR_HEADER:
+        raise ValueError(f"{number} records between bytes {size} and {points} do not fit")
+    file.seek(0)
+    head = file.read(points)
+    file.seek(0)
+    return head
 
 
 def _check_table(file: BinaryIO, header: Any) -> None:
     """What lazrs believes, and takes memory for, before it looks at the chunks."""
-    if not header.are_points_compressed:
-        return
     scheme = lazrs.LazVlr(header.vlrs.get("LasZipVlr")[0].record_data)
     stride, start, size = header.point_format.size, header.offset_to_point_data, os.fstat(file.fileno()).st_size
     if scheme.item_size() != stride:
