@@ -130,8 +130,10 @@ nb::dict to_dict(const SurfaceDistance& distance) {
   d["symmetric"] = summary(distance.symmetric);
   d["vertex_rms"] = distance.vertex_rms;
   d["diagonal"] = distance.diagonal;
-  d["normal_deviation_deg_rms"] = distance.normal_deviation.rms * kDegrees;
-  d["normal_deviation_deg_p95"] = distance.normal_deviation.p95 * kDegrees;
+  nb::dict deviation;
+  deviation["rms"] = distance.normal_deviation.rms * kDegrees;
+  deviation["p95"] = distance.normal_deviation.p95 * kDegrees;
+  d["normal_deviation_deg"] = deviation;
   d["samples"] = distance.samples;
   return d;
 }

@@ -49,6 +49,8 @@ class SampleResult(Result):
     """Finite points of the input."""
     candidates: int
     """Of those, distinct, not flagged as strays, and not skipped."""
+    is_partial: bool
+    """Fewer points than were asked for: all there are."""
     last_resort: int
     """Chosen although flagged or duplicate, since the count asked for it."""
     noise: float
@@ -121,6 +123,24 @@ class DistanceSummary(Result):
 
 
 @dataclass(frozen=True, repr=False)
+class NormalDeviation(Result):
+    """Angles between the face normals at a point and at its closest point, [deg]."""
+
+    rms: float
+    p95: float
+    """95th percentile."""
+
+
+@dataclass(frozen=True, repr=False)
+class RelativeDistance(Result):
+    """Distances by the diagonal of the reference's bounding box, [1]."""
+
+    forward: DistanceSummary
+    backward: DistanceSummary
+    symmetric: DistanceSummary
+
+
+@dataclass(frozen=True, repr=False)
 class SurfaceDistance(Result):
     """How far two surfaces are apart, both ways, as Metro measures it."""
 
@@ -133,15 +153,24 @@ class SurfaceDistance(Result):
     vertex_rms: float
     """[input length unit] over the vertices of the reference, to the test mesh."""
     diagonal: float
-    """[input length unit] of the reference's bounding box; lengths over it are relative."""
-    normal_deviation_deg_rms: float
-    """[deg] between the face normals at a point and at its closest point."""
-    normal_deviation_deg_p95: float
-    """[deg] 95th percentile."""
+    """[input length unit] of the reference's bounding box; see `relative`."""
+    normal_deviation_deg: NormalDeviation
+    """Of both directions together."""
     samples: int
     """[points] per surface."""
     distances: Optional[NDArray[np.float64]] = None
     """(n,) from every vertex of the test mesh to the reference, when asked for."""
+
+    @property
+    def relative(self) -> RelativeDistance:
+        """The same by the diagonal of the reference."""
+        sides = (self.forward, self.backward, self.symmetric)
+        return RelativeDistance(*(DistanceSummary(*(x / self.diagonal for x in (d.mean, d.rms, d.max))) for d in sides))
+
+    @property
+    def rmse(self) -> float:
+        """Of the reference's points to the test surface: the paper's eq. 15."""
+        return self.forward.rms
 
 
 @dataclass(frozen=True, repr=False)
@@ -168,7 +197,8 @@ class SamplingQuality(Result):
 def surface_distance(found: Dict[str, Any], **more: Any) -> SurfaceDistance:
     """From what the extension module returns."""
     sides = {side: DistanceSummary(**found[side]) for side in ("forward", "backward", "symmetric")}
-    return SurfaceDistance(**{**found, **sides, **more})
+    deviation = NormalDeviation(**found["normal_deviation_deg"])
+    return SurfaceDistance(**{**found, **sides, "normal_deviation_deg": deviation, **more})
 
 
 @dataclass(frozen=True, repr=False)
@@ -183,6 +213,8 @@ class SimplifyResult(Result):
     """(k,) the input vertex it is or, with placement "optimal", descends from."""
     sampled: bool
     """The input was a cloud: its points were sampled."""
+    is_partial: bool
+    """The target could not be reached: as far as it goes."""
     vertices_in: int
     faces_in: int
     noise: float

@@ -52,6 +52,34 @@ def test_too_few_faces_are_unreachable(bunny):
     assert caught.value.reachable > 30000
 
 
+def test_partial_results_say_so(bunny):
+    most = sl.simplify(bunny, vertices="10M", allow_partial=True, method="qslim")
+    assert most.is_partial and len(most.vertices) == 34834
+    all_points = sl.sample(bunny, count="50k", method="random", allow_partial=True)
+    assert all_points.is_partial and len(all_points.indices) == len(bunny)
+    assert not sl.sample(bunny, count=10, method="random", allow_partial=True).is_partial
+
+
+def test_memory_is_refused_before_work_starts(bunny, scans):
+    for job in (
+        lambda: sl.sample(bunny, ratio=0.1, max_memory="1M"),
+        lambda: sl.fields(bunny, max_memory=10**6),
+        lambda: sl.simplify(bunny, ratio=0.1, max_memory="10M"),
+        lambda: sl.register(*scans, max_memory="10M"),
+        lambda: sl.align(scans, max_memory="10M"),
+    ):
+        with pytest.raises(sl.BudgetExceeded) as caught:
+            job()
+        assert caught.value.code == 7
+
+
+def test_relative_distances_are_shares_of_the_diagonal(bunny):
+    distance = sl.metrics(bunny, sl.simplify(bunny, ratio=0.1, method="qslim").geometry, samples=1000)
+    assert distance.relative.symmetric.max == distance.symmetric.max / distance.diagonal
+    assert distance.rmse == distance.forward.rms
+    assert 0 < distance.normal_deviation_deg.rms < 90
+
+
 def test_a_mesh_is_no_distance_from_itself(bunny):
     distance = sl.metrics(bunny, bunny, samples=1000)
     assert distance.symmetric.max < 1e-9 * bunny.diagonal
