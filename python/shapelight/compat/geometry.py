@@ -19,7 +19,7 @@ def voxel_down_sample(cloud: GeometryLike, voxel_size: float) -> Any:
 
     Differs from Open3D: the point is the input point nearest to the others' mean, not the mean; attributes are its own.
     """
-    return sample(cloud, spacing=voxel_size, method="voxel").output
+    return sample(cloud, spacing=voxel_size, method="voxel", flag_outliers=False).output
 
 
 def random_down_sample(cloud: GeometryLike, sampling_ratio: float, *, seed: int = 0) -> Any:
@@ -30,7 +30,7 @@ def random_down_sample(cloud: GeometryLike, sampling_ratio: float, *, seed: int 
     count = int(len(geometry) * sampling_ratio)
     if count == 0:
         return like(cloud, geometry.select([]))
-    kept = sample(geometry, count=count, method="random", seed=seed).indices
+    kept = sample(geometry, count=count, method="random", seed=seed, flag_outliers=False).indices
     return like(cloud, geometry.select(np.sort(kept)))
 
 
@@ -48,7 +48,7 @@ def farthest_point_down_sample(cloud: GeometryLike, num_samples: int) -> Any:
     Differs from Open3D: the first point is chosen, not point 0 (there is no `start_index`), the points keep the order
     of the input, and it takes O(n log n) rather than O(n num_samples).
     """
-    return sample(cloud, count=num_samples, method="farthest").output
+    return sample(cloud, count=num_samples, method="farthest", flag_outliers=False).output
 
 
 def simplify_quadric_decimation(
