@@ -151,7 +151,7 @@ def _metric(method: Any) -> Any:
     if name not in METRICS:
         raise InvalidInput(f"estimation_method: {name}, expected one of {', '.join(METRICS)}")
     kernel = type(getattr(method, "kernel", None)).__name__
-    if getattr(method, "with_scaling", False) or kernel not in ("NoneType", "L2Loss", "RobustKernel"):
+    if getattr(method, "with_scaling", False) or kernel not in ("NoneType", "L2Loss"):
         raise InvalidInput("estimation_method: scaling and robust kernels are not offered; use shapelight.register")
     return METRICS[name]
 
