@@ -40,7 +40,7 @@ def test_icp_ends_where_open3d_ends(scans, method):
     criteria = theirs.ICPConvergenceCriteria(1e-9, 1e-9, 100)
     expected = getattr(theirs, register)(*scans[:2], DISTANCE, scans[2], getattr(theirs, name)(), criteria)
     actual = getattr(compat, register)(*scans[:2], DISTANCE, scans[2], getattr(compat, name)(), criteria)
-    np.testing.assert_allclose(actual.transformation, expected.transformation, atol=2e-5)
+    np.testing.assert_allclose(actual.transformation, expected.transformation, atol=2e-4)
     assert actual.fitness == pytest.approx(expected.fitness, abs=1e-3)
     assert actual.inlier_rmse == pytest.approx(expected.inlier_rmse, rel=1e-3)
 
