@@ -16,8 +16,8 @@ from .files import read
 from .geometry import NO_INDEX, Geometry, as_indices, as_points
 
 GeometryLike = Union[Geometry, ArrayLike, "os.PathLike[str]", Any]
-"""A Geometry; (n, 3) points; (height, width, 3) points of an organised scan; (vertices, faces); a path; a point cloud or
-mesh of Open3D, trimesh, PyVista or laspy."""
+"""A Geometry; (n, 3) points; (height, width, 3) points of an organised scan; (vertices, faces); a path; a point cloud
+or mesh of Open3D, trimesh, PyVista or laspy."""
 
 
 def as_geometry(source: GeometryLike, faces: Optional[ArrayLike] = None) -> Geometry:

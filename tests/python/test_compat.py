@@ -42,7 +42,7 @@ def test_icp_ends_where_open3d_ends(scans, method):
     actual = getattr(compat, register)(*scans[:2], DISTANCE, scans[2], getattr(compat, name)(), criteria)
     np.testing.assert_allclose(actual.transformation, expected.transformation, atol=2e-4)
     assert actual.fitness == pytest.approx(expected.fitness, abs=1e-3)
-    assert actual.inlier_rmse == pytest.approx(expected.inlier_rmse, rel=1e-3)
+    assert actual.inlier_rmse == pytest.approx(expected.inlier_rmse, rel=5e-3)
 
 
 def test_open3d_estimation_objects_are_taken(scans):
@@ -98,9 +98,10 @@ def test_nothing_near_is_no_error(scans):
 
 
 def test_normals_are_asked_for_or_estimated(scans):
-    bare = [open3d.geometry.PointCloud(cloud.points) for cloud in scans[:2]]
+    bare = [np.asarray(cloud.points).copy() for cloud in scans[:2]]
     with pytest.raises(sl.InvalidInput, match="target: point to plane needs normals"):
         compat.registration_icp(*bare, DISTANCE, scans[2], compat.TransformationEstimationPointToPlane())
+    bare[0][3] = np.nan
     found = compat.registration_generalized_icp(*bare, DISTANCE, scans[2])
     expected = compat.registration_generalized_icp(*scans[:2], DISTANCE, scans[2])
     np.testing.assert_allclose(found.transformation, expected.transformation, atol=2e-3)

@@ -64,6 +64,11 @@ def test_malformed_files_are_refused(data, name, message):
         sl.read(data / f"malformed/e57_{name}.e57")
 
 
+def test_missing_files_are_that(tmp_path):
+    with pytest.raises(sl.ReadError, match="nothing.e57"):
+        sl.read(tmp_path / "nothing.e57")
+
+
 def test_truncated_files_are_refused(tmp_path):
     raw = write(tmp_path / "one.e57", 1).read_bytes()
     for size in range(0, len(raw), 97):

@@ -117,7 +117,8 @@ def copc_of(path):
         file.write(head[:size] + records + head[size:])
         compressor = lazrs.LasZipCompressor(file, scheme)
         points = np.frombuffer(raw, np.uint8, offset=start)
-        compressor.compress_chunks([points[: 700 * stride], points[700 * stride : 5000 * stride], points[5000 * stride :]])
+        ends = [0, 700, 5000, 120_000]
+        compressor.compress_chunks([points[a * stride : b * stride] for a, b in zip(ends, ends[1:])])
         compressor.done()
     return target
 
@@ -147,6 +148,7 @@ def damaged(path, where, kind, value):
         (lambda p: damaged(p, 107, "<I", 0), "0 points"),
         (lambda p: damaged(p, 227 + 54 + 12, "<I", 2**30), "chunks of 1073741824 points"),
         (lambda p: damaged(p, 18203 + 4, "<I", 2**30), "1073741824 chunks do not fit"),
+        (lambda p: damaged(p, 131, "<d", 0.0), "no scale of 0"),
         (lambda p: damaged(p, 104, "<B", 0x8B), "header"),
     ],
 )
@@ -167,6 +169,24 @@ def test_flipped_bytes_never_hurt(data, tmp_path):
         bad[: rng.integers(0, len(bad))].tofile(tmp_path / "bad.laz")
         with pytest.raises((sl.FormatError, sl.ReadError)):
             sl.read(tmp_path / "bad.laz")
+
+
+def test_missing_files_are_that(tmp_path):
+    with pytest.raises(sl.ReadError, match="nothing.laz"):
+        sl.read(tmp_path / "nothing.laz")
+
+
+def test_progress_ends_at_one_and_may_stop_the_reading(rich, tmp_path):
+    sl.write(tmp_path / "a.laz", sl.read(rich))
+    seen = []
+    sl.read(tmp_path / "a.laz", progress=lambda fraction, phase: seen.append(fraction))
+    assert seen == sorted(seen) and seen[-1] == 1.0 and len(seen) > 1
+
+    def stop(fraction, phase):
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        sl.read(tmp_path / "a.laz", progress=stop)
 
 
 def test_the_command_reads_and_writes_laz(data, tmp_path):

@@ -98,26 +98,15 @@ def registration_icp(
     former and are estimated for the latter. Differs from Open3D: see ICPConvergenceCriteria; robust kernels and
     scaling are refused. `shapelight.register` needs no starting pose and says how sure it is.
     """
-    metric = _metric(estimation_method)
-    pose = _pose(init)
-    clouds, middle = [], np.zeros(3)
-    for name, given in (("target", target), ("source", source)):
-        geometry = as_geometry(given)
-        points, index = _finite(geometry)
-        if name == "target":
-            middle = points.mean(axis=0) if len(points) else middle
-        # Small numbers, relative to the middle of the target, so that large offsets cost no precision.
-        at = middle if name == "target" else np.linalg.solve(pose[:3, :3], middle - pose[:3, 3])
-        is_needed = metric == "gicp" or (metric == "plane" and name == "target")
-        normals = _normals(geometry, name, metric == "gicp")[index] if is_needed else None
-        clouds.append((RegistrationCloud(points - at, normals), at))
-    (fixed, at_target), (moving, at_source) = clouds
-    start = pose @ _shift(at_source)
-    start[:3, 3] -= at_target
+    metric, pose = _metric(estimation_method), _pose(init)
+    moving, fixed = as_geometry(source), as_geometry(target)
+    # Small numbers, relative to the middle of the target, so that large offsets cost no precision.
+    at_target = _middle(fixed)
+    at_source = np.asarray(np.linalg.solve(pose[:3, :3], at_target - pose[:3, 3]), np.float64)
     found = register_by_icp(
-        moving,
-        fixed,
-        start,
+        _cloud(moving, at_source, _normals(moving, "source", metric) if metric == "gicp" else None),
+        _cloud(fixed, at_target, None if metric == "point" else _normals(fixed, "target", metric)),
+        _shift(-at_target) @ pose @ _shift(at_source),
         metric=metric,
         max_distance=_distance(max_correspondence_distance),
         max_iterations=int(criteria.max_iteration),
@@ -157,7 +146,7 @@ def _metric(method: Any) -> Any:
 
 
 def _pose(transformation: Optional[ArrayLike]) -> NDArray[np.float64]:
-    return np.eye(4) if transformation is None else as_transform(transformation).copy()
+    return as_transform(np.eye(4) if transformation is None else transformation)
 
 
 def _distance(value: float) -> float:
@@ -171,16 +160,32 @@ def _finite(geometry: Geometry) -> Tuple[NDArray[np.float64], NDArray[np.int64]]
     return geometry.positions[index], index
 
 
-def _normals(geometry: Geometry, name: str, estimate: bool) -> NDArray[np.float64]:
+def _middle(geometry: Geometry) -> NDArray[np.float64]:
+    points, _ = _finite(geometry)
+    return np.asarray(points.mean(axis=0) if len(points) else np.zeros(3), np.float64)
+
+
+def _cloud(geometry: Geometry, at: NDArray[np.float64], normals: Optional[NDArray[np.float64]]) -> RegistrationCloud:
+    points, index = _finite(geometry)
+    return RegistrationCloud(points - at, None if normals is None else normals[index])
+
+
+def _normals(geometry: Geometry, name: str, metric: str) -> NDArray[np.float64]:
+    """(n, 3) unit, zero where undefined."""
     columns = [geometry.attributes.get(axis) for axis in ("nx", "ny", "nz")]
     if all(column is not None for column in columns):
         normals = np.column_stack([np.asarray(column, np.float64) for column in columns])
         length = np.linalg.norm(normals, axis=1, keepdims=True)
-        return np.divide(normals, length, out=np.zeros_like(normals), where=length > 0.0)
-    if not estimate:
+        normals /= np.where(length > 0.0, length, 1.0)
+        return normals
+    if metric != "gicp":
         raise InvalidInput(f"{name}: point to plane needs normals, expected attributes nx, ny, nz")
     graph = build_graph(geometry)
-    return np.asarray(graph.normal)[graph.vertex_of_point]
+    vertex = np.asarray(graph.vertex_of_point)
+    normals = np.zeros((len(geometry), 3))
+    known = vertex < len(graph.normal)
+    normals[known] = graph.normal[vertex[known]]
+    return normals
 
 
 def _shift(by: NDArray[np.float64]) -> NDArray[np.float64]:
