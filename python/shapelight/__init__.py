@@ -20,6 +20,7 @@ from .files import formats, iter_chunks, read, read_transform, register_format, 
 from .geometry import Geometry, concatenate
 from .interop import as_geometry, to_laspy, to_open3d, to_pyvista, to_trimesh
 from .jobs import align, fields, metrics, register, sample, simplify
+from .pictures import render, write_png
 from .results import (
     AlignedPair,
     AlignedScan,
@@ -69,6 +70,7 @@ __all__ = [
     "read_transform",
     "register",
     "register_format",
+    "render",
     "sample",
     "simplify",
     "to_laspy",
@@ -76,6 +78,7 @@ __all__ = [
     "to_pyvista",
     "to_trimesh",
     "write",
+    "write_png",
     "write_transform",
 ]
 
