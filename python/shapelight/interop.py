@@ -5,7 +5,7 @@ from __future__ import annotations
 import importlib
 import importlib.util
 import os
-from typing import Any, Optional, Union
+from typing import Any, Iterable, Optional, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -55,6 +55,12 @@ def like(source: GeometryLike, geometry: Geometry) -> Any:
     if isinstance(source, tuple) and len(source) == 2 and np.ndim(_array(source[0])) == 2:
         return like(source[0], geometry), geometry.triangles
     return geometry.positions.astype(_coordinate_type(_array(source)), copy=False)
+
+
+def like_with(source: GeometryLike, geometry: Geometry, names: Iterable[str]) -> Any:
+    """like(), or the geometry itself when that type has no room for these attributes."""
+    converted = like(source, geometry)
+    return converted if set(names) <= set(as_geometry(converted).attributes) else geometry
 
 
 def to_open3d(geometry: GeometryLike, *, tensor: bool = False) -> Any:

@@ -150,9 +150,8 @@ def test_results_come_back_in_the_type_that_came_in(kind, data):
     assert type(simplified) is type(mesh)
     assert len(sl.as_geometry(simplified).triangles) in (999, 1000)
     fields = sl.fields(mesh, preset="fast").output
-    assert type(fields) is type(mesh)
-    if kind != "open3d":  # its legacy meshes have no room for fields
-        assert "shape_index" in sl.as_geometry(fields).attributes
+    assert type(fields) is (sl.Geometry if kind == "open3d" else type(mesh))  # whose legacy meshes have no room
+    assert "shape_index" in sl.as_geometry(fields).attributes
 
 
 def test_single_precision_comes_back():
@@ -167,6 +166,9 @@ def test_pairs_of_vertices_and_faces():
     np.testing.assert_array_equal(geometry.triangles, PYRAMID)
     vertices, faces = sl.interop.like((CORNERS.astype(np.float32), PYRAMID), geometry)
     assert vertices.dtype == np.float32 and len(faces) == 6
+    simplified = sl.simplify(CORNERS.astype(np.float32), PYRAMID, vertices=5, method="qslim").output
+    assert simplified[0].dtype == np.float32 and len(simplified[1]) == 6
+    assert "shape_index" in sl.fields((CORNERS, PYRAMID), preset="fast").output.attributes
     assert len(sl.as_geometry(((0, 0, 0), (1, 1, 1)))) == 2  # a pair of points is no such pair
 
 

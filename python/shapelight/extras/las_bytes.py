@@ -35,7 +35,10 @@ def read_head(file: BinaryIO) -> bytes:
 
 def check_table(file: BinaryIO, header: Any) -> None:
     """What lazrs believes, and takes memory for, before it looks at the chunks."""
-    scheme = lazrs.LazVlr(header.vlrs.get("LasZipVlr")[0].record_data)
+    records = header.vlrs.get("LasZipVlr")
+    if not records:
+        raise ValueError("the points are compressed, expected a record of laszip that says how")
+    scheme = lazrs.LazVlr(records[0].record_data)
     stride, start, size = header.point_format.size, header.offset_to_point_data, os.fstat(file.fileno()).st_size
     if scheme.item_size() != stride:
         raise ValueError(f"compressed records of {scheme.item_size()} bytes, expected {stride}")
@@ -63,9 +66,12 @@ def _at(file: BinaryIO, kind: str, offset: int) -> int:
 def las_info(head: bytes) -> LasInfo:
     """Header and records as of the file that the decompressed points would be."""
     size, _, number = struct.unpack_from("<HII", head, HEADER_SIZE)
-    header, left, records = bytearray(head[:size]), head[size:], []
-    for _ in range(number):
-        end = VLR_HEADER + struct.unpack_from("<H", left, VLR_SIZE)[0]
+    header, left = bytearray(head[:size]), head[size:]
+    records = []
+    for i in range(number):
+        end = VLR_HEADER + (struct.unpack_from("<H", left, VLR_SIZE)[0] if len(left) >= VLR_HEADER else 0)
+        if end > len(left):
+            raise ValueError(f"record {i + 1} of {number} does not end before the points")
         if left[VLR_USER : VLR_USER + 16].rstrip(b"\0") not in OF_COMPRESSION:
             records.append(left[:end])
         left = left[end:]
