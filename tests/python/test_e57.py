@@ -75,3 +75,43 @@ def test_truncated_files_are_refused(tmp_path):
         (tmp_path / "cut.e57").write_bytes(raw[:size])
         with pytest.raises(sl.FormatError, match="cut.e57"):
             sl.read(tmp_path / "cut.e57")
+
+
+def crc32c(page):
+    crc = 0xFFFFFFFF
+    for byte in page:
+        crc ^= byte
+        for _ in range(8):
+            crc = crc >> 1 ^ (0x82F63B78 if crc & 1 else 0)
+    return crc ^ 0xFFFFFFFF
+
+
+def with_text(path, old, new):
+    """The file with other text of the same length, and with checksums that are right."""
+    assert len(old) == len(new)
+    raw = bytearray(path.read_bytes())
+    text = bytearray(b"".join(raw[page : page + 1020] for page in range(0, len(raw), 1024)))
+    at = text.index(old)
+    text[at : at + len(old)] = new
+    for page in range(0, len(raw), 1024):
+        raw[page : page + 1020] = text[page // 1024 * 1020 :][:1020]
+        raw[page + 1020 : page + 1024] = crc32c(raw[page : page + 1020]).to_bytes(4, "big")
+    path.write_bytes(raw)
+    return path
+
+
+@pytest.mark.parametrize(
+    "old, new",
+    [
+        (b'recordCount="20"', b'recordCount="99"'),
+        (b"<cartesianX", b"<kartesianX"),
+        (b"</e57Root>", b"</e57Boot>"),
+        (b"<data3D", b"<data4D"),
+        (b'fileOffset="48"', b'fileOffset="99"'),
+    ],
+)
+def test_contents_that_do_not_fit_are_refused(tmp_path, old, new):
+    path = write(tmp_path / "one.e57", 1)
+    assert len(sl.read(with_text(path, old, old))) == 19  # the checksums are right
+    with pytest.raises(sl.FormatError, match="e57: .*one.e57: "):
+        sl.read(with_text(path, old, new))

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from pye57 import libe57
 from pye57.utils import convert_spherical_to_cartesian
 
-from ..errors import Error, FormatError, ReadError
+from ..errors import BudgetExceeded, Error, FormatError, ReadError
 from ..files import Context
 from ..geometry import NO_INDEX, Geometry, concatenate
 
@@ -50,8 +50,10 @@ def read(path: str, context: Context) -> Geometry:
             place = f"scan {index}"
             scans.append(_read_scan(file, index, context))
             context.report((index + 1) / file.scan_count)
-    except (Error, MemoryError):
+    except Error:
         raise
+    except MemoryError as error:
+        raise BudgetExceeded(f"e57: {path}: {place}: more points than there is memory for") from error
     except OSError as error:
         raise ReadError(f"e57: {path}: {error}") from error
     except Exception as error:

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import files
-from ..errors import Error, FormatError, ReadError, WriteError
+from ..errors import BudgetExceeded, Error, FormatError, ReadError, WriteError
 from ..geometry import NO_INDEX, Geometry
 from .las_bytes import HEADER_SIZE, POINT_FORMAT, check_table, las_info, read_head
 
@@ -112,8 +112,10 @@ def chunks(path: str, size: int) -> Iterator[Tuple[Geometry, int]]:
                 if len(chunk) < expected:
                     raise FormatError(f"laz: {path}: the file ends {expected - len(chunk)} points early")
                 yield chunk, count
-    except (Error, KeyboardInterrupt, SystemExit, GeneratorExit, MemoryError):
+    except (Error, KeyboardInterrupt, SystemExit, GeneratorExit):
         raise
+    except MemoryError as error:
+        raise BudgetExceeded(f"laz: {path}: {place}: more points than there is memory for") from error
     except OSError as error:
         raise ReadError(f"laz: {path}: {error}") from error
     except BaseException as error:  # panics of lazrs derive from nothing less
