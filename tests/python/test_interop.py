@@ -101,6 +101,12 @@ def test_trimesh_vertices_are_read_in_place():
     assert sl.as_geometry(mesh.vertices)._view().positions_address == mesh.vertices.ctypes.data
 
 
+def test_trimesh_keeps_duplicate_and_unused_vertices():
+    pytest.importorskip("trimesh", reason="trimesh is not installed")
+    twice = sl.Geometry(np.vstack([CORNERS, CORNERS]), PYRAMID)
+    np.testing.assert_array_equal(sl.to_trimesh(twice).vertices, twice.positions)
+
+
 def test_trimesh_texture_and_face_colors_follow():
     trimesh = pytest.importorskip("trimesh", reason="trimesh is not installed")
     material = trimesh.visual.material.SimpleMaterial()
