@@ -11,15 +11,11 @@ from __future__ import annotations
 import importlib
 from typing import Any, Optional
 
-import numpy as np
-
 LIBRARIES = ("open3d", "trimesh", "pyvista", "laspy")
 
 
 def adapter_of(thing: Any) -> Optional[Any]:
-    """The module for what `thing` is; None for arrays, also for those of a class of these libraries."""
-    if isinstance(thing, np.ndarray):
-        return None
+    """The module for the library that the class of `thing` comes from, if any."""
     for base in type(thing).__mro__:
         library = base.__module__.partition(".")[0]
         if library in LIBRARIES:
