@@ -17,13 +17,12 @@ set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
 set(CPACK_DEBIAN_TOOL_PACKAGE_NAME shapelight)
 set(CPACK_DEBIAN_TOOL_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_TOOL_PACKAGE_SHLIBDEPS ON)
-set(CPACK_COMPONENT_TOOL_DESCRIPTION "sampling, simplification and registration of meshes and scans
- Keeps the points that carry a shape, simplifies meshes by measured error and
- registers overlapping scans, from the command line.")
+set(CPACK_COMPONENT_TOOL_DESCRIPTION
+    "Samples, simplifies and registers meshes, range images and point clouds from the command line.")
 
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libshapelight-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libeigen3-dev, libtbb-dev, libfmt-dev, libpng-dev, liblzf-dev")
-set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "sampling, simplification and registration of meshes and scans (library)
- Headers, static library and CMake package of the C++ library shapelight.")
+set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION
+    "Headers, static library and CMake package of the C++ library.")
 include(CPack)

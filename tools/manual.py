@@ -3,7 +3,7 @@
 
   tools/manual.py SHAPELIGHT FOLDER
 
-FOLDER becomes a share folder: man/man1/, bash-completion/completions/, zsh/site-functions/, fish/vendor_completions.d/.
+FOLDER becomes a share folder: man/man1/, bash-completion/completions/, zsh/vendor-completions/, fish/vendor_completions.d/.
 """
 
 import argparse
@@ -119,7 +119,7 @@ def main():
     version = output_of("--version").split()[1]
     files = {"man/man1/shapelight.1.gz": main_page(whole, commands, version, output_of("formats")),
              "bash-completion/completions/shapelight": completions.bash(whole, commands),
-             "zsh/site-functions/_shapelight": completions.zsh(whole, commands),
+             "zsh/vendor-completions/_shapelight": completions.zsh(whole, commands),
              "fish/vendor_completions.d/shapelight.fish": completions.fish(whole, commands)}
     for command in commands:
         files[f"man/man1/shapelight-{command.name}.1.gz"] = command_page(command, version)
