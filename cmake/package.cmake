@@ -18,7 +18,7 @@ set(CPACK_DEBIAN_TOOL_PACKAGE_NAME shapelight)
 set(CPACK_DEBIAN_TOOL_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_TOOL_PACKAGE_SHLIBDEPS ON)
 set(CPACK_COMPONENT_TOOL_DESCRIPTION
-    "Samples, simplifies and registers meshes, range images and point clouds from the command line.")
+    "Samples, simplifies and registers meshes, range images and point\nclouds from the command line.")
 
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libshapelight-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
