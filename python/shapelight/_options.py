@@ -36,6 +36,15 @@ class AlignOptions(TypedDict, total=False):
     """At the end, move all scans at once. (True)"""
 
 
+class AlignCoarselyOptions(TypedDict, total=False):
+    """Options of align_coarsely()."""
+
+    same_side: bool
+    """The normals of both scans look at their sensors. (False)"""
+    max_hypotheses: int
+    """Distinct poses to return at most. [poses] (8)"""
+
+
 class FieldsOptions(TypedDict, total=False):
     """Options of fields()."""
 
@@ -102,6 +111,30 @@ class MetricsOptions(TypedDict, total=False):
     """Another seed gives other samples. (0)"""
 
 
+class OptimizePoseGraphOptions(TypedDict, total=False):
+    """Options of optimize_pose_graph()."""
+
+    min_confidence: float
+    """Pairs that are less sure are not used. (0.5)"""
+    max_chi_sq: float
+    """Pairs and loops that disagree by more are wrong. (22.46)"""
+    max_iterations: int
+    """Iterations of the last fit at most. [iterations] (100)"""
+
+
+class RefineJointlyOptions(TypedDict, total=False):
+    """Options of refine_jointly()."""
+
+    max_distance: float
+    """Points farther apart do not correspond. [target spacings] (3.0)"""
+    max_slide: float
+    """The same, along the surface. [target spacings] (2.0)"""
+    max_iterations: int
+    """Iterations at most. [iterations] (30)"""
+    tolerance: float
+    """Stop when no scan moves more. [target spacings] (0.01)"""
+
+
 class RegisterOptions(TypedDict, total=False):
     """Options of register()."""
 
@@ -121,6 +154,74 @@ class RegisterOptions(TypedDict, total=False):
     """Pairs farther apart have no say (icp, plane, gicp); 0: a tenth of the diagonal. [input length unit] (0.0)"""
     seed: int
     """Seed of the samplers that draw at random. (0)"""
+
+
+class RegisterByFicpOptions(TypedDict, total=False):
+    """Options of register_by_ficp()."""
+
+    lambda_: float
+    """Exponent of the inlier fraction. (0.95)"""
+    start_lambda: float
+    """Where annealing starts; equal to lambda: pure FICP. (3.0)"""
+    min_fraction: float
+    """Smallest share of the pairs to trust. (0.05)"""
+    max_fraction: float
+    """Largest share of the pairs to trust. (1.0)"""
+    max_iterations: int
+    """Iterations at most, per value of lambda. [iterations] (400)"""
+    rotation_tolerance: float
+    """Stop when a step turns less. [rad] (1e-06)"""
+    translation_tolerance: float
+    """Stop when a step moves less. [diagonals] (1e-06)"""
+
+
+class RegisterByIcpOptions(TypedDict, total=False):
+    """Options of register_by_icp()."""
+
+    metric: Literal["point", "plane", "gicp"]
+    """What a pair of points costs. (plane)"""
+    max_distance: float
+    """Pairs farther apart have no say; 0: a tenth of the diagonal. [input length unit] (0.0)"""
+    max_iterations: int
+    """Iterations at most. [iterations] (100)"""
+    rotation_tolerance: float
+    """Stop when a step turns less. [rad] (1e-06)"""
+    translation_tolerance: float
+    """Stop when a step moves less. [diagonals] (1e-06)"""
+
+
+class RegisterBySoftIcpOptions(TypedDict, total=False):
+    """Options of register_by_soft_icp()."""
+
+    candidates: int
+    """Nearest points each way that a point may be matched with. [points] (1)"""
+    rate: float
+    """Factor by which sigma shrinks. (0.85)"""
+    kappa: float
+    """A pair closer than this outweighs the slack; 0: by the candidates. [sigma] (0.0)"""
+    final_sigma: float
+    """Where annealing ends; 0: by the candidates. [point spacings] (0.0)"""
+    balance_passes: int
+    """Passes of row and column normalisation. [passes] (4)"""
+    max_iterations: int
+    """Iterations at the final sigma at most. [iterations] (60)"""
+    tolerance: float
+    """Stop when a step is smaller. [rad, diagonals] (1e-06)"""
+
+
+class RenderOptions(TypedDict, total=False):
+    """Options of render()."""
+
+    width: int
+    """Width of the picture. [pixels] (1200)"""
+    height: int
+    """Height of the picture. [pixels] (900)"""
+    supersample: int
+    """Smoothness of edges. [samples per pixel and axis] (2)"""
+    field_of_view: float
+    """Strength of the perspective; 0.1 is orthographic. [deg] (20.0)"""
+    occlusion: float
+    """Darkness of corners and crevices. (1.0)"""
 
 
 class SampleOptions(TypedDict, total=False):
@@ -186,6 +287,35 @@ class SampleOptions(TypedDict, total=False):
     """Smaller segments join a neighbour. [points] (20)"""
     segment_min_share: float
     """Smaller shares of all vertices join a neighbour. (0.0005)"""
+
+
+class ScanPairOptions(TypedDict, total=False):
+    """Options of scan_pair()."""
+
+    overlap: float
+    """Share of the source's points that the target shows as well. (0.8)"""
+    azimuth: float
+    """Azimuth of the target's camera. [rad] (0.0)"""
+    elevation: float
+    """Elevation of both cameras. [rad] (0.3)"""
+    field_of_view: float
+    """Across the image. [rad] (0.5)"""
+    width: int
+    """Columns of the range image. [pixels] (320)"""
+    height: int
+    """Rows of the range image. [pixels] (320)"""
+    noise: float
+    """Standard deviation of the measured range. [input length unit] (0.0)"""
+    quantization: float
+    """Ranges are multiples of this; 0: exact. [input length unit] (0.0)"""
+    dropout: float
+    """Share of pixels that measure nothing. (0.0)"""
+    max_incidence: float
+    """Flatter surfaces are not seen. [rad] (1.4)"""
+    random_pose: bool
+    """Give the scan a random frame instead of the camera's. (False)"""
+    seed: int
+    """Seed of noise, drop-outs and the random pose. (0)"""
 
 
 class SimplifyOptions(TypedDict, total=False):
@@ -263,3 +393,50 @@ class SimplifyOptions(TypedDict, total=False):
     """Smaller segments join a neighbour. [points] (20)"""
     segment_min_share: float
     """Smaller shares of all vertices join a neighbour. (0.0005)"""
+
+
+class SimplifyQslimOptions(TypedDict, total=False):
+    """Options of simplify_qslim()."""
+
+    placement: Literal["input", "optimal"]
+    """Where vertices may lie. (input)"""
+    boundary_weight: float
+    """Weight of the planes that hold borders in place. (1.0)"""
+
+
+class SimplifySsimOptions(TypedDict, total=False):
+    """Options of simplify_ssim()."""
+
+    placement: Literal["input", "optimal"]
+    """Where vertices may lie. (input)"""
+    sample_weight: float
+    """Factor on the cost of removing a sample. (1.5)"""
+    boundary_weight: float
+    """Weight of the error of borders. (1.0)"""
+    normal_weight: float
+    """Weight of the error of normals. (0.1)"""
+    pre_collapse: float
+    """Quadrics collapse to this multiple of the target; 1: all the way. (3.0)"""
+    sweeps: int
+    """Rounds of edge flips and vertex moves at the end. [rounds] (4)"""
+
+
+class VirtualScanOptions(TypedDict, total=False):
+    """Options of virtual_scan()."""
+
+    width: int
+    """Columns of the range image. [pixels] (320)"""
+    height: int
+    """Rows of the range image. [pixels] (320)"""
+    noise: float
+    """Standard deviation of the measured range. [input length unit] (0.0)"""
+    quantization: float
+    """Ranges are multiples of this; 0: exact. [input length unit] (0.0)"""
+    dropout: float
+    """Share of pixels that measure nothing. (0.0)"""
+    max_incidence: float
+    """Flatter surfaces are not seen. [rad] (1.4)"""
+    random_pose: bool
+    """Give the scan a random frame instead of the camera's. (False)"""
+    seed: int
+    """Seed of noise, drop-outs and the random pose. (0)"""
