@@ -4,7 +4,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-"${PYTHON:-python3}" -m venv build/tools
+"${PYTHON:-python3}" -m venv --clear build/tools
 export PATH=$PWD/build/tools/bin:$PATH
 pip install -q -r tools/requirements.txt
 rm -rf wheels build/system_wheel
