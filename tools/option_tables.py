@@ -34,9 +34,11 @@ def in_words(flags, meaning):
     """Choices are named in the meaning: a | in code ends the cell for some readers of Markdown, escaped or not."""
     if not (choices := CHOICES.search(flags)):
         return flags, meaning
-    names = ", ".join(f"`{name}`" for name in choices[1].split("|"))
-    extras = EXTRAS.search(meaning)
-    return f"{flags[:choices.start()]} NAME", f"{meaning[:extras.start()]} One of {names}.{extras[0]}"
+    names, extras = choices[1].split("|"), EXTRAS.search(meaning)
+    text = meaning[:extras.start()]
+    if not all(name in text for name in names):
+        text += f" One of {', '.join(f'`{name}`' for name in names)}."
+    return f"{flags[:choices.start()]} NAME", text + extras[0]
 
 
 def table(shapelight, command, group):
