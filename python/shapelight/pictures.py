@@ -180,6 +180,16 @@ def from_oklab(lab: ArrayLike) -> NDArray[np.float32]:
     return np.asarray(_core.from_oklab(as_points(lab, "lab")))
 
 
+def srgb_to_linear(value: float) -> float:
+    """One channel in [0, 1] from sRGB to linear light."""
+    return float(_core.srgb_to_linear(value))
+
+
+def linear_to_srgb(value: float) -> float:
+    """One channel in [0, 1] from linear light to sRGB."""
+    return float(_core.linear_to_srgb(value))
+
+
 def _numbers(values: ArrayLike) -> NDArray[np.float64]:
     array = np.ascontiguousarray(values, dtype=np.float64)
     if array.ndim != 1:
