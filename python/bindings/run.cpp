@@ -65,11 +65,15 @@ void run_interruptibly(const CallStyle& style, const std::function<void(const Ru
   std::thread worker = start(exchange, context, work);
   std::optional<nb::python_error> raised;  // by a signal handler or the progress callable
   std::vector<std::pair<double, std::string>> progress;
+  double reached = 0.0;
   for (bool done = false; !done;) {
     done = wait_for_news(exchange, progress);
     if (raised) continue;
     try {
-      for (const auto& [fraction, phase] : progress) style.progress(fraction, phase);
+      for (const auto& [fraction, phase] : progress) {
+        style.progress(fraction, phase);
+        reached = fraction;
+      }
       if (PyErr_CheckSignals() != 0) throw nb::python_error();
     } catch (nb::python_error& error) {
       raised.emplace(std::move(error));
@@ -82,6 +86,8 @@ void run_interruptibly(const CallStyle& style, const std::function<void(const Ru
   }
   if (raised) throw std::move(*raised);
   if (exchange.failure) std::rethrow_exception(exchange.failure);
+  // A short stage may report nothing; its bar ends full all the same.
+  if (!style.progress.is_none() && reached < 1.0) style.progress(1.0, "");
 }
 
 }  // namespace shapelight::python

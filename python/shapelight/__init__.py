@@ -4,6 +4,7 @@
     kept = sl.sample(points, ratio=0.1).indices
 """
 
+from . import stages
 from ._core import __version__
 from .errors import (
     BudgetExceeded,
@@ -15,9 +16,10 @@ from .errors import (
     TargetUnreachable,
     WriteError,
 )
-from .files import formats, read, read_transform, register_format, write, write_transform
-from .geometry import Geometry
-from .interop import as_geometry
+from .extras import register_extras
+from .files import formats, iter_chunks, read, read_transform, register_format, write, write_transform
+from .geometry import Geometry, concatenate
+from .interop import as_geometry, to_laspy, to_open3d, to_pyvista, to_trimesh
 from .jobs import align, fields, metrics, register, sample, simplify
 from .pictures import render, write_png
 from .results import (
@@ -60,8 +62,10 @@ __all__ = [
     "__version__",
     "align",
     "as_geometry",
+    "concatenate",
     "fields",
     "formats",
+    "iter_chunks",
     "metrics",
     "read",
     "read_transform",
@@ -70,7 +74,14 @@ __all__ = [
     "render",
     "sample",
     "simplify",
+    "stages",
+    "to_laspy",
+    "to_open3d",
+    "to_pyvista",
+    "to_trimesh",
     "write",
     "write_png",
     "write_transform",
 ]
+
+register_extras()
