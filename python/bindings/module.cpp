@@ -8,6 +8,7 @@ NB_MODULE(_core, module) {
   module.attr("__version__") = SHAPELIGHT_VERSION;
   module.attr("option_tables") = nanobind::dict();
   translate_errors();
+  bind_run(module);
   bind_data(module);
   bind_io(module);
   bind_command_line(module);
