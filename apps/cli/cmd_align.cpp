@@ -11,12 +11,12 @@
 #include "run.hpp"
 #include "shapelight/io/transform.hpp"
 #include "shapelight/pipeline/align.hpp"
+#include "shapelight/pipeline/memory_estimate.hpp"
 
 namespace shapelight::cli {
 namespace {
 
 constexpr int kNotAllPlaced = 6;
-constexpr std::uint64_t kBytesPerPoint = 900;  // of all scans: measured peak of a whole run, rounded up
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 struct AlignArguments {
@@ -155,7 +155,7 @@ std::vector<Geometry> read_scans(const AlignArguments& arguments, Run& run) {
   for (const std::string& path : arguments.scans) {
     scans.push_back(run.read(path));
     points += scans.back().size();
-    run.check_memory(points * kBytesPerPoint);
+    run.check_memory(points * kRegisterBytesPerPoint);
   }
   run.points_in = points;
   return scans;

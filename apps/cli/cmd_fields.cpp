@@ -4,11 +4,10 @@
 #include "described_options.hpp"
 #include "run.hpp"
 #include "shapelight/pipeline/fields.hpp"
+#include "shapelight/pipeline/memory_estimate.hpp"
 
 namespace shapelight::cli {
 namespace {
-
-constexpr std::uint64_t kBytesPerPoint = 900;
 
 struct FieldsArguments {
   std::string input, output, preset = "detail";
@@ -25,7 +24,7 @@ int run_fields(const FieldsArguments& arguments, const DescribedFlags<FieldsOpti
 
   Geometry geometry = run.read(arguments.input);
   run.check_output(arguments.output);
-  run.check_memory(geometry.size() * kBytesPerPoint);
+  run.check_memory(geometry.size() * kFieldsBytesPerPoint);
   PointFields result = run.timed("fields", [&] { return point_fields(geometry, options, run.context()); });
   run.warn(result.diagnostics);
   geometry.attributes.set(std::move(result.attributes));

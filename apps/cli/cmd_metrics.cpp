@@ -6,10 +6,7 @@
 #include "commands.hpp"
 #include "described_options.hpp"
 #include "run.hpp"
-#include "shapelight/core/error.hpp"
-#include "shapelight/graph/build_graph.hpp"
-#include "shapelight/metrics/sampling_quality.hpp"
-#include "shapelight/metrics/surface_distance.hpp"
+#include "shapelight/pipeline/measure.hpp"
 
 namespace shapelight::cli {
 namespace {
@@ -18,21 +15,6 @@ struct MetricsArguments {
   std::string reference, test, output;
   CommonOptions common;
 };
-
-// The surface of a mesh or a range image; no triangles of a cloud.
-TriangleMesh surface_of(const Geometry& geometry) {
-  if (!geometry.grid || !geometry.triangles.empty()) return {geometry.positions, geometry.triangles};
-  return {geometry.positions,
-          range_image_triangles(geometry.positions, *geometry.grid, geometry.viewpoint, GraphOptions{}.depth_jump)};
-}
-
-// Triangles at points that were never measured are no surface.
-void drop_unmeasured(TriangleMesh& mesh, const std::string& path, Run& run) {
-  const std::size_t dropped = std::erase_if(mesh.triangles, [&](const Triangle& t) {
-    return !(mesh.positions[t[0]].allFinite() && mesh.positions[t[1]].allFinite() && mesh.positions[t[2]].allFinite());
-  });
-  if (dropped > 0) run.warn(fmt::format("{}: {} triangles at non-finite vertices: ignored", path, dropped));
-}
 
 nlohmann::ordered_json to_json(const DistanceSummary& d) { return {{"mean", d.mean}, {"rms", d.rms}, {"max", d.max}}; }
 
@@ -65,23 +47,7 @@ void report_surfaces(const SurfaceDistance& d, Run& run) {
              degrees(d.normal_deviation.p95));
 }
 
-std::vector<Vec3> finite_points(const Geometry& geometry) {
-  std::vector<Vec3> points;
-  for (const Vec3& p : geometry.positions) {
-    if (p.allFinite()) points.push_back(p);
-  }
-  return points;
-}
-
-void measure_points(const Geometry& reference_geometry, const Geometry& test_geometry, Run& run) {
-  const std::vector<Vec3> reference = finite_points(reference_geometry), test = finite_points(test_geometry);
-  const RunContext context = run.context();
-  const SamplingQuality q = run.timed("measure", [&] {
-    const std::vector<double> importance = surface_variation_knn(reference, 30, context);
-    return measure_sampling(reference, importance, test, context);
-  });
-  run.points_in = reference.size();
-  run.points_out = test.size();
+void report_points(const SamplingQuality& q, double diagonal, Run& run) {
   run.result = {{"coverage_max", q.coverage_max},
                 {"coverage_mean", q.coverage_mean},
                 {"feature_coverage_max", q.feature_coverage_max},
@@ -91,7 +57,6 @@ void measure_points(const Geometry& reference_geometry, const Geometry& test_geo
                 {"spacing_min", q.spacing_min},
                 {"spacing_cv", q.spacing_cv}};
   if (run.common().json == "-") return;
-  const double diagonal = bounding_box(reference).diagonal();
   print_length("coverage max", q.coverage_max, diagonal);
   print_length("coverage mean", q.coverage_mean, diagonal);
   print_length("feature coverage max", q.feature_coverage_max, diagonal);
@@ -100,15 +65,6 @@ void measure_points(const Geometry& reference_geometry, const Geometry& test_geo
   print_length("spacing min", q.spacing_min, diagonal);
   fmt::print("{:<24}{:.4g}\n{:<24}{:.4g} %\n", "spacing variation", q.spacing_cv, "samples on features",
              100.0 * q.feature_share);
-}
-
-void write_distances(const MetricsArguments& arguments, Geometry test, const TriangleMesh& reference, Run& run) {
-  const TriangleMesh points{test.positions, {}};
-  test.attributes.set({"distance", run.timed("vertex distances", [&] {
-                         const RunContext context = run.context();
-                         return vertex_distances(points, TriangleTree(reference, context), context);
-                       })});
-  run.write(arguments.output, test);
 }
 
 int run_metrics(const MetricsArguments& arguments, const DescribedFlags<SurfaceDistanceOptions>& flags,
@@ -122,25 +78,25 @@ int run_metrics(const MetricsArguments& arguments, const DescribedFlags<SurfaceD
   const Geometry reference = run.read(arguments.reference);
   Geometry test = run.read(arguments.test);
   if (wants_distances) run.check_output(arguments.output);
+  run.points_in = reference.size();
+  run.points_out = test.size();
 
-  TriangleMesh reference_surface = surface_of(reference), test_surface = surface_of(test);
-  drop_unmeasured(reference_surface, arguments.reference, run);
-  drop_unmeasured(test_surface, arguments.test, run);
-  if (wants_distances && reference_surface.triangles.empty()) {
-    throw InvalidInput(fmt::format("{}: has no triangles, expected a surface for --output", arguments.reference));
+  std::vector<double> distances;  // first: a reference without a surface is told before anything is printed
+  if (wants_distances) {
+    distances = run.timed("vertex distances", [&] { return distances_to_surface(reference, test, run.context()); });
   }
-  if (reference_surface.triangles.empty() || test_surface.triangles.empty()) {
-    measure_points(reference, test, run);
-  } else {
+  const MeasureResult measured = run.timed("measure", [&] { return measure(reference, test, options, run.context()); });
+  for (const std::string& warning : measured.warnings) run.warn(warning);
+  if (measured.surfaces) {
     run.options = options_json(options);
-    run.points_in = reference.size();
-    run.points_out = test.size();
-    report_surfaces(
-        run.timed("measure",
-                  [&] { return measure_surface_distance(reference_surface, test_surface, options, run.context()); }),
-        run);
+    report_surfaces(*measured.surfaces, run);
+  } else {
+    report_points(*measured.points, measured.diagonal, run);
   }
-  if (wants_distances) write_distances(arguments, std::move(test), reference_surface, run);
+  if (wants_distances) {
+    test.attributes.set({"distance", std::move(distances)});
+    run.write(arguments.output, test);
+  }
   run.finish();
   return 0;
 }

@@ -9,12 +9,12 @@
 #include "matrix_json.hpp"
 #include "run.hpp"
 #include "shapelight/io/transform.hpp"
+#include "shapelight/pipeline/memory_estimate.hpp"
 #include "shapelight/pipeline/register.hpp"
 
 namespace shapelight::cli {
 namespace {
 
-constexpr std::uint64_t kBytesPerPoint = 900;  // of both scans: measured peak of a whole run, rounded up
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 struct RegisterArguments {
@@ -88,7 +88,7 @@ int run_register(const RegisterArguments& arguments, const DescribedFlags<Regist
   Geometry source = run.read(arguments.source);
   const Geometry target = run.read(arguments.target);
   check_outputs();
-  run.check_memory((source.size() + target.size()) * kBytesPerPoint);
+  run.check_memory((source.size() + target.size()) * kRegisterBytesPerPoint);
   flags.apply(options, bounding_box(target.positions).diagonal());
   const RegisterResult result =
       run.timed("register", [&] { return register_scans(source, target, init, options, run.context()); });

@@ -7,13 +7,13 @@
 #include "commands.hpp"
 #include "described_options.hpp"
 #include "run.hpp"
+#include "shapelight/pipeline/memory_estimate.hpp"
 #include "shapelight/pipeline/sample.hpp"
 
 namespace shapelight::cli {
 namespace {
 
 constexpr int kTargetUnreachable = 5;
-constexpr std::uint64_t kBytesPerPoint = 900;  // measured peak of a whole run, rounded up
 
 struct SampleArguments {
   std::string input, output, count, ratio, spacing, preset = "detail";
@@ -73,7 +73,7 @@ int run_sample(const SampleArguments& arguments, const DescribedFlags<SampleOpti
 
   Geometry geometry = run.read(arguments.input);
   run.check_output(arguments.output);
-  run.check_memory(geometry.size() * kBytesPerPoint);
+  run.check_memory(geometry.size() * kSampleBytesPerPoint);
   run.attributes_dropped = arguments.attributes.apply(geometry.attributes);
   const SampleSize size = size_of(arguments, bounding_box(geometry.positions).diagonal());
   const auto [result, is_partial] =

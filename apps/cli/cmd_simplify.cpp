@@ -6,13 +6,13 @@
 #include "commands.hpp"
 #include "described_options.hpp"
 #include "run.hpp"
+#include "shapelight/pipeline/memory_estimate.hpp"
 #include "shapelight/pipeline/simplify.hpp"
 
 namespace shapelight::cli {
 namespace {
 
 constexpr int kTargetUnreachable = 5;
-constexpr std::uint64_t kBytesPerPoint = 1700;  // measured peak of a whole run, rounded up
 
 struct SimplifyArguments {
   std::string input, output, vertices, faces, ratio, max_error, preset;
@@ -120,7 +120,7 @@ int run_simplify(const SimplifyArguments& arguments, const DescribedFlags<Simpli
 
   Geometry geometry = run.read(arguments.input);
   run.check_output(arguments.output);
-  run.check_memory(geometry.size() * kBytesPerPoint);
+  run.check_memory(geometry.size() * kSimplifyBytesPerPoint);
   run.attributes_dropped = arguments.attributes.apply(geometry.attributes);
   const SimplifySize size = size_of(arguments, bounding_box(geometry.positions).diagonal());
   auto [result, is_partial] = run.timed(

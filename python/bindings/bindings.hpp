@@ -22,5 +22,6 @@ void bind_registration(nb::module_& module);
 void bind_synthetic(nb::module_& module);
 void bind_render(nb::module_& module);
 void bind_jobs(nb::module_& module);
+void bind_scan_jobs(nb::module_& module);
 
 }  // namespace shapelight::python

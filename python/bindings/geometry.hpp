@@ -7,6 +7,8 @@
 #include "arrays.hpp"
 #include "shapelight/data/geometry.hpp"
 #include "shapelight/graph/surface_graph.hpp"
+#include "shapelight/metrics/sampling_quality.hpp"
+#include "shapelight/metrics/surface_distance.hpp"
 #include "shapelight/simplify/simplified_mesh.hpp"
 
 namespace shapelight::python {
@@ -37,5 +39,7 @@ struct InputView {
 
 [[nodiscard]] nb::dict to_dict(const GraphDiagnostics& diagnostics);
 [[nodiscard]] nb::dict to_dict(const MeshOddities& oddities);
+[[nodiscard]] nb::dict to_dict(const SurfaceDistance& distance);
+[[nodiscard]] nb::dict to_dict(const SamplingQuality& quality);
 
 }  // namespace shapelight::python

@@ -22,4 +22,5 @@ NB_MODULE(_core, module) {
   bind_synthetic(module);
   bind_render(module);
   bind_jobs(module);
+  bind_scan_jobs(module);
 }

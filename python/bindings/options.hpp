@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <nanobind/nanobind.h>
+#include <nanobind/stl/string.h>
 
 #include <cmath>
 #include <string>
@@ -44,6 +45,14 @@ void set_option(const OptionInfo& info, nb::handle value, Member& member) {
     if (std::is_integral_v<Member> && number != std::floor(number)) refuse(info, value, "a whole number");
     member = static_cast<Member>(number);
   }
+}
+
+/// The enum value of this name. Throws InvalidInput that lists the names.
+template <class E>
+[[nodiscard]] E enum_named(const char* option, const std::string& name) {
+  E value{};
+  set_option(OptionInfo{option, "", ""}, nb::str(name.c_str()), value);
+  return value;
 }
 
 /// Overrides the members that `given` names. Throws InvalidInput, and TypeError for a name that no member has.

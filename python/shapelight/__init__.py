@@ -18,29 +18,56 @@ from .errors import (
 from .files import formats, read, read_transform, register_format, write, write_transform
 from .geometry import Geometry
 from .interop import as_geometry
-from .jobs import fields, sample
-from .results import FieldsResult, SampleResult
+from .jobs import align, fields, metrics, register, sample, simplify
+from .results import (
+    AlignedPair,
+    AlignedScan,
+    AlignResult,
+    DistanceSummary,
+    FieldsResult,
+    NormalDeviation,
+    RegisterResult,
+    RelativeDistance,
+    SampleResult,
+    SamplingQuality,
+    SimplifyResult,
+    SurfaceDistance,
+)
 
 __all__ = [
+    "AlignResult",
+    "AlignedPair",
+    "AlignedScan",
     "BudgetExceeded",
+    "DistanceSummary",
     "Error",
     "FieldsResult",
     "FormatError",
     "Geometry",
     "InvalidInput",
+    "NormalDeviation",
     "PostconditionFailed",
     "ReadError",
+    "RegisterResult",
+    "RelativeDistance",
     "SampleResult",
+    "SamplingQuality",
+    "SimplifyResult",
+    "SurfaceDistance",
     "TargetUnreachable",
     "WriteError",
     "__version__",
+    "align",
     "as_geometry",
     "fields",
     "formats",
+    "metrics",
     "read",
     "read_transform",
+    "register",
     "register_format",
     "sample",
+    "simplify",
     "write",
     "write_transform",
 ]

@@ -5,6 +5,37 @@ from __future__ import annotations
 from typing import Literal, TypedDict
 
 
+class AlignOptions(TypedDict, total=False):
+    """Options of align()."""
+
+    method: Literal["ficp", "ficp-pure", "softicp", "icp", "plane", "gicp"]
+    """How the scans are brought together. (ficp)"""
+    sampler: Literal["shape", "random", "voxel", "stratified", "farthest", "poisson", "normal", "covariance"]
+    """How points are chosen; both scans are thinned. (shape)"""
+    ratio: float
+    """Share of each scan's points to register; 0: 2000 to 10000 points. (0.0)"""
+    skip_boundary: bool
+    """Choose no points on the border of a scan. (True)"""
+    coarse: bool
+    """Without --init look for a starting pose; else start where the files say. (True)"""
+    polish: bool
+    """At the end, a few steps against the full target. (True)"""
+    max_distance: float
+    """Pairs farther apart have no say (icp, plane, gicp); 0: a tenth of the diagonal. [input length unit] (0.0)"""
+    seed: int
+    """Seed of the samplers that draw at random. (0)"""
+    min_confidence: float
+    """Pairs that are less sure are not used. (0.5)"""
+    sequence: bool
+    """The scans come in order: try neighbours, then what turns out to overlap. (False)"""
+    max_all_pairs: int
+    """Up to so many scans every pair is tried. [scans] (30)"""
+    min_overlap: float
+    """Placed scans that share so much are registered, closing loops. (0.1)"""
+    refine: bool
+    """At the end, move all scans at once. (True)"""
+
+
 class FieldsOptions(TypedDict, total=False):
     """Options of fields()."""
 
@@ -62,6 +93,36 @@ class FieldsOptions(TypedDict, total=False):
     """Smaller shares of all vertices join a neighbour. (0.0005)"""
 
 
+class MetricsOptions(TypedDict, total=False):
+    """Options of metrics()."""
+
+    samples: int
+    """Samples per surface; 0: ten per vertex of the larger, at least 100000. [points] (0)"""
+    seed: int
+    """Another seed gives other samples. (0)"""
+
+
+class RegisterOptions(TypedDict, total=False):
+    """Options of register()."""
+
+    method: Literal["ficp", "ficp-pure", "softicp", "icp", "plane", "gicp"]
+    """How the scans are brought together. (ficp)"""
+    sampler: Literal["shape", "random", "voxel", "stratified", "farthest", "poisson", "normal", "covariance"]
+    """How points are chosen; both scans are thinned. (shape)"""
+    ratio: float
+    """Share of each scan's points to register; 0: 2000 to 10000 points. (0.0)"""
+    skip_boundary: bool
+    """Choose no points on the border of a scan. (True)"""
+    coarse: bool
+    """Without --init look for a starting pose; else start where the files say. (True)"""
+    polish: bool
+    """At the end, a few steps against the full target. (True)"""
+    max_distance: float
+    """Pairs farther apart have no say (icp, plane, gicp); 0: a tenth of the diagonal. [input length unit] (0.0)"""
+    seed: int
+    """Seed of the samplers that draw at random. (0)"""
+
+
 class SampleOptions(TypedDict, total=False):
     """Options of sample()."""
 
@@ -73,6 +134,83 @@ class SampleOptions(TypedDict, total=False):
     """Leave out points on the border of an open surface. (False)"""
     seed: int
     """Seed of the methods that draw at random. (0)"""
+    adaptive: bool
+    """Choose curvature method, passes and denoising by the input and its noise. (True)"""
+    denoise: bool
+    """Non-local means on the shape index. (True)"""
+    retinex: bool
+    """Split the shape index into illumination and reflectance. (True)"""
+    segment: bool
+    """Cut the reflectance into segments. (True)"""
+    neighbors: int
+    """Neighbours per point in the graph of a raw cloud. [points] (12)"""
+    depth_jump: float
+    """Longer edges between pixels of a range image are cut. [median pixel spacings] (6.0)"""
+    flag_outliers: bool
+    """Flag strays of a raw cloud, so that they are chosen last. (True)"""
+    curvature_method: Literal["taubin", "quadric", "normal-field"]
+    """How curvature is estimated. (taubin)"""
+    curvature_passes: int
+    """Averages of the curvature tensor over the 1-ring. (1)"""
+    curvature_neighbors: int
+    """Support of the quadric and of the normal field. [points] (20)"""
+    shape_index: Literal["regularised", "literal"]
+    """Regularised, or the paper's literal equation 2. (regularised)"""
+    curvedness_factor: float
+    """Share of the median curvedness in the regularisation. (3.0)"""
+    noise_factor: float
+    """Share of sigma / h^2 in the regularisation. (1.5)"""
+    flatness: float
+    """Share of 1 / h in the regularisation. (0.02)"""
+    variation_method: Literal["nearest", "diffusion"]
+    """How the points around a vertex are gathered. (nearest)"""
+    variation_neighbors: int
+    """Neighbourhood of the surface variation. [points] (30)"""
+    nlm_rings: int
+    """Window in which similar patches are looked for. [rings] (3)"""
+    nlm_candidates: int
+    """Largest number of patches compared with each. [points] (64)"""
+    nlm_bandwidth_sq: float
+    """Patch distance that counts as similar; 0: automatic. [field unit squared] (0.0)"""
+    retinex_sigma: float
+    """Spatial width of the illumination. [mean edge lengths] (3.0)"""
+    retinex_range_sigma: float
+    """Difference of intensity that counts as an edge. (0.15)"""
+    retinex_rings: int
+    """Support of one bilateral mean. [rings] (4)"""
+    retinex_neighbors: int
+    """Largest number of vertices in one bilateral mean. [points] (80)"""
+    segment_scale: float
+    """Preference for large segments, k of tau = k / size. (0.5)"""
+    segment_min_points: int
+    """Smaller segments join a neighbour. [points] (20)"""
+    segment_min_share: float
+    """Smaller shares of all vertices join a neighbour. (0.0005)"""
+
+
+class SimplifyOptions(TypedDict, total=False):
+    """Options of simplify()."""
+
+    method: Literal["ssim", "ssim-paper", "qslim"]
+    """How the mesh is simplified. (ssim)"""
+    placement: Literal["input", "optimal"]
+    """Where vertices may lie. (input)"""
+    sample_weight: float
+    """Factor on the cost of removing a sample. (1.5)"""
+    boundary_weight: float
+    """Weight of the error of borders. (1.0)"""
+    normal_weight: float
+    """Weight of the error of normals. (0.1)"""
+    pre_collapse: float
+    """Quadrics collapse to this multiple of the target; 1: all the way. (3.0)"""
+    sweeps: int
+    """Rounds of edge flips and vertex moves at the end. [rounds] (4)"""
+    local_weight: float
+    """Share of the guiding samples chosen for local detail (the paper's T). (0.65)"""
+    noise_threshold: float
+    """More noise than this: the error is measured against a denoised surface. [mean edge lengths] (0.1)"""
+    measure: bool
+    """Measure and report the distance between input and result. (False)"""
     adaptive: bool
     """Choose curvature method, passes and denoising by the input and its noise. (True)"""
     denoise: bool

@@ -4,6 +4,8 @@ Every class has `code`, the exit code of the command line for the same cause, an
 that Python programmers catch for it.
 """
 
+from typing import Any
+
 
 class Error(RuntimeError):
     """Base of everything the library raises."""
@@ -37,9 +39,10 @@ class TargetUnreachable(Error):
 
 
 class PostconditionFailed(Error):
-    """A result does not hold what is promised of it, so it is withheld."""
+    """A result does not hold what is promised of it, so it is withheld; `result` has it where there is one."""
 
     code = 6
+    result: Any = None
 
 
 class BudgetExceeded(Error, MemoryError):

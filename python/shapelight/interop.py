@@ -13,7 +13,7 @@ from .files import read
 from .geometry import NO_INDEX, Geometry, as_indices, as_points
 
 GeometryLike = Union[Geometry, ArrayLike, "os.PathLike[str]", Any]
-"""A Geometry; (n, 3) points; (height, width, 3) points of an organised scan; a path."""
+"""A Geometry; (n, 3) points; (vertices, faces); (height, width, 3) points of an organised scan; a path."""
 
 
 def as_geometry(source: GeometryLike, faces: Optional[ArrayLike] = None) -> Geometry:
@@ -25,6 +25,8 @@ def as_geometry(source: GeometryLike, faces: Optional[ArrayLike] = None) -> Geom
         return source
     if isinstance(source, (str, os.PathLike)):
         return read(source)
+    if isinstance(source, tuple) and len(source) == 2 and faces is None:
+        source, faces = source
     array = np.asarray(source)
     if array.ndim == 3 and faces is None:
         return _organised(array)

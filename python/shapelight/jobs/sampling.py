@@ -1,48 +1,25 @@
-"""The jobs: one function each, the same names and options as the shapelight command."""
+"""Sampling and the fields that guide it."""
 
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, Literal, Optional, Union
+from typing import TYPE_CHECKING, Literal, Optional
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from . import _core
-from .describe import described
-from .errors import InvalidInput
-from .geometry import Geometry
-from .interop import GeometryLike, as_geometry
-from .progress import Progress, as_callable
-from .results import FieldsResult, SampleResult
+from .. import _core
+from ..describe import described
+from ..errors import TargetUnreachable
+from ..interop import GeometryLike, as_geometry
+from ..progress import Progress, as_callable
+from ..results import FieldsResult, SampleResult
+from .quantities import Bytes, Count, Length, Share, as_count, as_length, as_numbers, as_share, check_memory
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
 
-    from ._options import FieldsOptions, SampleOptions
-
-Share = Union[float, str]
-"""0.1 or "10%"."""
-Length = Union[float, str]
-"""In input units, or a share of the bounding box's diagonal: "0.5%"."""
-
-
-def _share(name: str, value: Optional[Share]) -> Optional[float]:
-    if not isinstance(value, str):
-        return value
-    try:
-        return float(value[:-1]) / 100.0 if value.endswith("%") else float(value)
-    except ValueError:
-        raise InvalidInput(f"{name}: '{value}', expected a share such as 0.1 or '10%'") from None
-
-
-def _length(name: str, value: Optional[Length], view: _core.GeometryView) -> Optional[float]:
-    if not isinstance(value, str):
-        return value
-    try:
-        return float(value[:-1]) / 100.0 * view.diagonal if value.endswith("%") else float(value)
-    except ValueError:
-        raise InvalidInput(f"{name}: '{value}', expected a length such as 0.5 or '2%' of the diagonal") from None
+    from .._options import FieldsOptions, SampleOptions
 
 
 @described("sample")
@@ -50,10 +27,12 @@ def sample(
     points_or_mesh: GeometryLike,
     faces: Optional[ArrayLike] = None,
     *,
-    count: Optional[int] = None,
+    count: Optional[Count] = None,
     ratio: Optional[Share] = None,
     spacing: Optional[Length] = None,
     preset: Literal["detail", "fast", "paper"] = "detail",
+    allow_partial: bool = False,
+    max_memory: Optional[Bytes] = None,
     threads: int = 0,
     progress: Progress = None,
     **options: Unpack[SampleOptions],
@@ -66,19 +45,29 @@ def sample(
     ratio           share of the finite points to keep, or
     spacing         [input length unit, or "%" of the diagonal] what the method bounds
     preset          "fast": without non-local means and Retinex; "paper": the literal paper
+    allow_partial   as many points as there are when the count cannot be reached; `is_partial` says so
+    max_memory      [bytes, or "2G"] refuse the job when its estimate is larger
     threads         0: all cores; never changes a result
     progress        None, True, a callable (fraction, phase), or a tqdm bar
 
     Raises InvalidInput (options, or not exactly one of count, ratio and spacing), TargetUnreachable (fewer points can
-    be chosen than asked for).
+    be chosen than asked for), BudgetExceeded.
     """
     geometry = as_geometry(points_or_mesh, faces)
+    check_memory("sample", [geometry], max_memory)
+    size = as_count("count", count), as_share("ratio", ratio), as_length("spacing", spacing, geometry)
+    given = as_numbers("sample", {**options}, geometry)
     view = geometry._view()
+    is_partial = False
     with as_callable(progress) as report:
-        found = _core.sample(
-            view, count, _share("ratio", ratio), _length("spacing", spacing, view), preset, options, threads, report
-        )
-    return SampleResult(**found, source=points_or_mesh, geometry=geometry)
+        try:
+            found = _core.sample(view, *size, preset, given, threads, report)
+        except TargetUnreachable as error:
+            if not allow_partial or error.reachable == 0:
+                raise
+            is_partial = True
+            found = _core.sample(view, error.reachable, None, None, preset, given, threads, report)
+    return SampleResult(**found, is_partial=is_partial, source=points_or_mesh, geometry=geometry)
 
 
 @described("fields")
@@ -87,6 +76,7 @@ def fields(
     faces: Optional[ArrayLike] = None,
     *,
     preset: Literal["detail", "fast", "paper"] = "detail",
+    max_memory: Optional[Bytes] = None,
     threads: int = 0,
     progress: Progress = None,
     **options: Unpack[FieldsOptions],
@@ -99,8 +89,9 @@ def fields(
     Raises InvalidInput (option out of range).
     """
     geometry = as_geometry(points_or_mesh, faces)
+    check_memory("fields", [geometry], max_memory)
     with as_callable(progress) as report:
-        found = _core.fields(geometry._view(), preset, options, threads, report)
+        found = _core.fields(geometry._view(), preset, {**options}, threads, report)
     columns = found.pop("attributes")
     whole = replace(geometry, attributes={**geometry.attributes, **columns})
     arrays = {name: columns.get(name, np.zeros(0, np.float32)) for name in FIELD_NAMES}
