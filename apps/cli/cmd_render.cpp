@@ -5,9 +5,8 @@
 #include "commands.hpp"
 #include "described_options.hpp"
 #include "run.hpp"
-#include "shapelight/render/field_colors.hpp"
 #include "shapelight/render/image.hpp"
-#include "shapelight/render/renderer.hpp"
+#include "shapelight/render/panels.hpp"
 
 namespace shapelight::cli {
 namespace {
@@ -23,22 +22,6 @@ struct RenderArguments {
 
 std::string stem(const std::string& path) { return std::filesystem::path(path).stem().string(); }
 
-// One panel: an input, coloured by one field ("none": neutral).
-RenderItem make_panel(const Geometry& geometry, const std::string& name, const std::string& color,
-                      const RenderArguments& arguments) {
-  RenderItem item;
-  item.geometry = &geometry;
-  item.title = color == "none" ? name : fmt::format("{}: {}", name, color);
-  item.point_radius = 0.5 * arguments.point_size;
-  item.dot_radius = 0.5 * arguments.dot_size;
-  if (color != "none") {
-    FieldColors field = color_by_field(geometry, color);
-    item.colors = std::move(field.colors);
-    item.legend = std::move(field.legend);
-  }
-  return item;
-}
-
 int run_render(const RenderArguments& arguments, const DescribedFlags<RenderOptions>& flags, std::stop_token stop) {
   Run run("render", arguments.common, std::move(stop));
   RenderOptions options;
@@ -52,25 +35,18 @@ int run_render(const RenderArguments& arguments, const DescribedFlags<RenderOpti
 
   std::vector<Geometry> geometries;
   for (const std::string& input : arguments.inputs) geometries.push_back(run.read(input));
-  std::vector<std::vector<Vec3>> dots;
-  for (const std::string& path : arguments.dots) dots.push_back(run.read(path).positions);
+  std::vector<Geometry> dots;
+  for (const std::string& path : arguments.dots) dots.push_back(run.read(path));
   run.check_output(arguments.output, false);
 
-  // Panels: every input in every colour, under every set of dots.
-  std::vector<RenderItem> panels;
+  std::vector<NamedGeometry> inputs;
+  for (std::size_t i = 0; i < geometries.size(); ++i) inputs.push_back({&geometries[i], stem(arguments.inputs[i])});
+  std::vector<NamedDots> named_dots;
+  for (std::size_t i = 0; i < dots.size(); ++i) named_dots.push_back({dots[i].positions, stem(arguments.dots[i])});
   const std::vector<std::string> colors =
       arguments.colors.empty() ? std::vector<std::string>{"none"} : arguments.colors;
-  for (std::size_t i = 0; i < geometries.size(); ++i) {
-    for (const std::string& color : colors) {
-      const RenderItem plain = make_panel(geometries[i], stem(arguments.inputs[i]), color, arguments);
-      if (dots.empty()) panels.push_back(plain);
-      for (std::size_t d = 0; d < dots.size(); ++d) {
-        panels.push_back(plain);
-        panels.back().dots = dots[d];
-        if (dots.size() > 1) panels.back().title += fmt::format(", {}", stem(arguments.dots[d]));
-      }
-    }
-  }
+  const std::vector<RenderItem> panels =
+      make_panels(inputs, colors, named_dots, {.point = arguments.point_size, .dot = arguments.dot_size});
   const Image image = run.timed("render", [&] { return render_scene(panels, options, run.context()); });
   if (!arguments.common.dry_run) write_png(arguments.output, image, arguments.common.force);
   run.options = options_json(options);

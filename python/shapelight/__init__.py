@@ -19,6 +19,7 @@ from .files import formats, read, read_transform, register_format, write, write_
 from .geometry import Geometry
 from .interop import as_geometry
 from .jobs import align, fields, metrics, register, sample, simplify
+from .pictures import render, write_png
 from .results import (
     AlignedPair,
     AlignedScan,
@@ -66,8 +67,10 @@ __all__ = [
     "read_transform",
     "register",
     "register_format",
+    "render",
     "sample",
     "simplify",
     "write",
+    "write_png",
     "write_transform",
 ]

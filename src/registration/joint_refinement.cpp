@@ -184,6 +184,9 @@ void check_normals(const ScanView& scan, std::size_t index) {
 
 PairFit measure_fit(const ScanView& target, const ScanView& source, const RigidTransform& T_target_source,
                     const JointRefinementOptions& options) {
+  validate_options(options);
+  check_normals(target, 0);
+  check_normals(source, 1);
   PairFit fit;
   double sum = 0.0;
   const auto add = [&](const ScanView& to, const ScanView& from, const RigidTransform& T) {

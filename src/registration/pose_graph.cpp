@@ -231,6 +231,10 @@ class Graph {
 }  // namespace
 
 EdgeDisagreement measure_disagreement(const PoseGraphEdge& edge, std::span<const RigidTransform> T_world_scan) {
+  if (std::max(edge.target, edge.source) >= T_world_scan.size()) {
+    throw InvalidInput(fmt::format("pose graph: edge ({} to {}), expected scans below {}", edge.source, edge.target,
+                                   T_world_scan.size()));
+  }
   const Vector6 error = registration::coordinates_of(error_of(edge, T_world_scan));
   return {error.head<3>().norm(), error.tail<3>().norm(), error.dot(edge.covariance.llt().solve(error))};
 }

@@ -224,6 +224,16 @@ class Ssim {
   WorkFrame frame_{};
 };
 
+void check_guide(const SsimGuide& guide, std::size_t num_vertices) {
+  for (const Index v : guide.samples) {
+    if (v >= num_vertices) throw InvalidInput(fmt::format("ssim: sample {} >= {} vertices", v, num_vertices));
+  }
+  if (!guide.denoised.empty() && guide.denoised.size() != num_vertices) {
+    throw InvalidInput(fmt::format("ssim: {} denoised positions, expected one for each of {} vertices",
+                                   guide.denoised.size(), num_vertices));
+  }
+}
+
 }  // namespace
 
 SimplifiedMesh simplify_ssim(const TriangleMesh& mesh, const SimplifyTarget& target, const SsimGuide& guide,
@@ -233,6 +243,7 @@ SimplifiedMesh simplify_ssim(const TriangleMesh& mesh, const SimplifyTarget& tar
   if ((target.vertices == 0) == (target.faces == 0)) {
     throw InvalidInput("simplify: expected a target of either vertices or faces");
   }
+  check_guide(guide, mesh.positions.size());
   ManifoldMesh manifold = make_manifold(mesh, features, context.phase(0.0, 0.05, "prepare"), oddities);
   SimplifyTarget copies = target;  // locked copies of one vertex count one by one, and are merged in the end
   if (target.vertices > 0) copies.vertices += manifold.source.size() - num_merged_vertices(manifold);

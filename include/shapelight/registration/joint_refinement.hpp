@@ -41,6 +41,7 @@ struct PairFit {
   std::size_t matches = 0;  ///< [samples] of both, that have one
   double rms = 0.0;         ///< [input length unit] point to plane, over the counterparts; 0 without any
 };
+/// Throws InvalidInput (options, a scan without normals: the target is scan 0, the source scan 1).
 [[nodiscard]] PairFit measure_fit(const ScanView& target, const ScanView& source, const RigidTransform& T_target_source,
                                   const JointRefinementOptions& options = {});
 

@@ -59,6 +59,7 @@ struct EdgeDisagreement {
   double translation = 0.0;  ///< [input length unit]
   double chi_sq = 0.0;       ///< [1] in standard deviations, squared; 6 are expected
 };
+/// Throws InvalidInput when the edge names a scan without a pose.
 [[nodiscard]] EdgeDisagreement measure_disagreement(const PoseGraphEdge& edge,
                                                     std::span<const RigidTransform> T_world_scan);
 

@@ -3,6 +3,8 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <string_view>
+#include <utility>
 
 namespace shapelight {
 
@@ -17,6 +19,13 @@ enum class ColorMap : std::uint8_t {
   Diverging,    ///< blue, near-white, orange: lightness falls equally to both sides of the middle
   Categorical,  ///< the number is a label; see distinct_color()
 };
+
+[[nodiscard]] constexpr auto enum_names(ColorMap) {
+  return std::array<std::pair<ColorMap, std::string_view>, 4>{{{ColorMap::Sequential, "sequential"},
+                                                               {ColorMap::BlueYellow, "blue-yellow"},
+                                                               {ColorMap::Diverging, "diverging"},
+                                                               {ColorMap::Categorical, "categorical"}}};
+}
 
 /// Colour at t in [0, 1]; clamped outside, grey for NaN. Pre: map is not Categorical.
 [[nodiscard]] Color map_color(ColorMap map, double t);

@@ -1,0 +1,185 @@
+"""Pictures: shaded meshes, range images and clouds, with fields as colours. The same as `shapelight render` makes."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, List, Optional, Sequence, Tuple, Union
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _core
+from .describe import described
+from .errors import InvalidInput
+from .geometry import as_points
+from .interop import GeometryLike, as_geometry
+from .progress import Progress, as_callable
+from .results import Result
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from ._options import RenderOptions
+
+Picture = NDArray[np.uint8]
+"""(height, width, 3) red, green, blue; the first row on top."""
+
+
+def _several(things: Any) -> List[Any]:
+    """A list of geometries as it is, one geometry (which may be a list of points) as a list of one."""
+    if not isinstance(things, (list, tuple)):
+        return [things]
+    is_points = bool(things) and isinstance(things[0], (list, tuple, np.ndarray)) and np.ndim(things[0]) == 1
+    return [things] if is_points else list(things)
+
+
+def _name(thing: Any) -> str:
+    return Path(thing).stem if isinstance(thing, (str, os.PathLike)) else ""
+
+
+@described("render")
+def render(
+    geometries: Union[GeometryLike, Sequence[GeometryLike]],
+    *,
+    color: Union[None, str, Sequence[str]] = None,
+    dots: Union[None, GeometryLike, Sequence[GeometryLike]] = None,
+    titles: Optional[Sequence[str]] = None,
+    view: str = "auto",
+    point_size: float = 0.0,
+    dot_size: float = 0.0,
+    captions: bool = True,
+    threads: int = 0,
+    progress: Progress = None,
+    **options: Unpack[RenderOptions],
+) -> Picture:
+    """Draws geometries side by side, in every colour and under every set of dots, as (height, width, 3) uint8.
+
+    geometries  whatever `as_geometry` takes, or a list of such
+    color       field to colour by: an attribute, "rgb", "normal", "x", "y", "z" or "none"; or a list, a panel each
+    dots        points to draw on top, such as a sample; or a list of such, a panel each
+    titles      captions, one per panel; else what the files and colours are called
+    view        "auto", "front", "back", "left", "right", "top", "bottom", "iso", or "x,y,z" of the eye
+    point_size  [pixels] diameter of a cloud's points; 0: by their spacing
+    dot_size    [pixels] diameter of the dots; 0: by their number
+    captions    False: a single panel that fills the picture, without caption and colour bar
+
+    Raises InvalidInput (no geometry, no finite point, no such field: lists those there are).
+    """
+    inputs = [(_name(g), as_geometry(g)._view()) for g in _several(geometries)]
+    marks = [(_name(d), as_geometry(d).positions) for d in ([] if dots is None else _several(dots))]
+    colors = [color or "none"] if color is None or isinstance(color, str) else list(color)
+    style = {
+        "colors": colors,
+        "titles": [] if titles is None else _several(titles),
+        "view": view,
+        "point_size": float(point_size),
+        "dot_size": float(dot_size),
+        "captions": captions,
+    }
+    with as_callable(progress) as report:
+        return np.asarray(_core.render(inputs, marks, style, options, threads, report))
+
+
+def _as_picture(image: ArrayLike) -> Picture:
+    array = np.asarray(image)
+    if array.ndim != 3 or array.shape[2] != 3 or array.dtype != np.uint8:
+        raise InvalidInput(f"image: {array.dtype} {array.shape}, expected uint8 (height, width, 3)")
+    return np.ascontiguousarray(array)
+
+
+def write_png(path: Union[str, os.PathLike[str]], image: ArrayLike, *, overwrite: bool = False) -> None:
+    """Writes a (height, width, 3) uint8 picture, beside its target, then renames. The same image gives the same bytes.
+
+    Raises WriteError (exists and `overwrite` is off, no space, ...).
+    """
+    _core.write_png(os.fspath(path), _as_picture(image), overwrite)
+
+
+def image_grid(
+    images: Sequence[ArrayLike],
+    *,
+    columns: int,
+    gap: int = 0,
+    background: Tuple[int, int, int] = (255, 255, 255),
+) -> Picture:
+    """Places pictures row by row in `columns`, each centred in a cell as large as the largest; `gap` [pixels]."""
+    return np.asarray(_core.image_grid([_as_picture(i) for i in images], columns, gap, background))
+
+
+@dataclass(frozen=True, repr=False)
+class View(Result):
+    """How one looks at an object."""
+
+    direction: NDArray[np.float64]
+    """(3,) unit, from the eye into the scene, input frame."""
+    up: NDArray[np.float64]
+    """(3,) unit, perpendicular to direction."""
+    distance: float
+    """[input length unit] of the eye from the box's middle; 0: by the field of view."""
+
+
+def parse_view(text: str, geometry: GeometryLike) -> View:
+    """What `view` of `render` means for a geometry. Raises InvalidInput that lists what is understood."""
+    direction, up, distance = _core.parse_view(text, as_geometry(geometry)._view())
+    return View(direction, up, distance)
+
+
+@dataclass(frozen=True, repr=False)
+class FieldColors(Result):
+    """A field as colours, and what its colour bar says."""
+
+    colors: NDArray[np.float32]
+    """(n, 3) sRGB in [0, 1]; grey where the field is not finite."""
+    name: str
+    """Empty where a colour bar says nothing: "rgb", "normal"."""
+    map: str
+    """"sequential", "blue-yellow", "diverging" or "categorical"."""
+    min: float
+    """Value of the first colour."""
+    max: float
+    """Value of the last colour."""
+
+
+def color_by_field(geometry: GeometryLike, field: str) -> FieldColors:
+    """Colours by an attribute, or by "rgb", "normal", "x", "y", "z". Raises InvalidInput that lists the fields."""
+    return FieldColors(**_core.color_by_field(as_geometry(geometry)._view(), field))
+
+
+def color_by_values(values: ArrayLike, name: str = "") -> FieldColors:
+    """Colours of (n,) values. The name decides for some: "shape_index" has the range -1 to 1, labels get one each."""
+    return FieldColors(**_core.color_by_values(_numbers(values), name))
+
+
+def map_color(map: str, t: ArrayLike) -> NDArray[np.float32]:
+    """(n, 3) sRGB of (n,) numbers in [0, 1]; clamped outside, grey for NaN. `map`: see `FieldColors`."""
+    return np.asarray(_core.map_color(map, _numbers(t)))
+
+
+def distinct_color(labels: ArrayLike) -> NDArray[np.float32]:
+    """(n, 3) sRGB of (n,) labels: neighbours in number differ clearly; grey for negative ones."""
+    return np.asarray(_core.distinct_color(np.ascontiguousarray(labels, dtype=np.int64)))
+
+
+def value_range(values: ArrayLike) -> Tuple[float, float]:
+    """The 1st and 99th percentile of the finite values, as far apart as colours need."""
+    low, high = _core.value_range(_numbers(values))
+    return float(low), float(high)
+
+
+def to_oklab(colors: ArrayLike) -> NDArray[np.float64]:
+    """(n, 3) OKLab (Ottosson 2020) of (n, 3) sRGB in [0, 1]."""
+    return np.asarray(_core.to_oklab(as_points(colors, "colors")))
+
+
+def from_oklab(lab: ArrayLike) -> NDArray[np.float32]:
+    """(n, 3) sRGB of (n, 3) OKLab, clipped to what sRGB can show."""
+    return np.asarray(_core.from_oklab(as_points(lab, "lab")))
+
+
+def _numbers(values: ArrayLike) -> NDArray[np.float64]:
+    array = np.ascontiguousarray(values, dtype=np.float64)
+    if array.ndim != 1:
+        raise InvalidInput(f"values: shape {array.shape}, expected (n,)")
+    return array
