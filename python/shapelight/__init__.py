@@ -34,6 +34,7 @@ from .results import (
     SimplifyResult,
     SurfaceDistance,
 )
+from .scene import Scene, show
 
 __all__ = [
     "AlignResult",
@@ -53,6 +54,7 @@ __all__ = [
     "RelativeDistance",
     "SampleResult",
     "SamplingQuality",
+    "Scene",
     "SimplifyResult",
     "SurfaceDistance",
     "TargetUnreachable",
@@ -69,6 +71,7 @@ __all__ = [
     "register_format",
     "render",
     "sample",
+    "show",
     "simplify",
     "write",
     "write_png",

@@ -122,6 +122,11 @@ class Geometry:
         names = f", attributes {', '.join(self.attributes)}" if self.attributes else ""
         return f"Geometry({self.kind}: {len(self)} points{faces}{pixels}{names})"
 
+    def _repr_html_(self) -> Optional[str]:
+        from .scene import html_of
+
+        return html_of(self)
+
     def select(self, indices: ArrayLike) -> Geometry:
         """The points at `indices` in that order, with their attributes; triangles and pixels are left behind."""
         return Geometry(**self._view().select_points(as_indices(indices, "indices", (-1,))))

@@ -49,7 +49,7 @@ def register(
     given = as_numbers("register", {**options}, fixed)
     with as_callable(progress) as report:
         found = _core.register_scans(moving._view(), fixed._view(), start, given, threads, report)
-    result = RegisterResult(**found, source=source, geometry=moving)
+    result = RegisterResult(**found, source=source, geometry=moving, target=fixed)
     if not result.confidence >= min_confidence:
         raise _withheld(
             f"confidence {result.confidence:.2f} is below min_confidence {min_confidence:g}: {result.doubt}", result

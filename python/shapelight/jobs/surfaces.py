@@ -83,6 +83,7 @@ def simplify(
         **found,
         is_partial=is_partial,
         source=mesh_or_vertices,
+        original=geometry,
         geometry=simplified,
     )
 
