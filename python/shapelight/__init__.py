@@ -15,8 +15,9 @@ from .errors import (
     TargetUnreachable,
     WriteError,
 )
-from .files import formats, read, read_transform, register_format, write, write_transform
-from .geometry import Geometry
+from .extras import register_extras
+from .files import formats, iter_chunks, read, read_transform, register_format, write, write_transform
+from .geometry import Geometry, concatenate
 from .interop import as_geometry
 from .jobs import align, fields, metrics, register, sample, simplify
 from .pictures import render, write_png
@@ -62,8 +63,10 @@ __all__ = [
     "__version__",
     "align",
     "as_geometry",
+    "concatenate",
     "fields",
     "formats",
+    "iter_chunks",
     "metrics",
     "read",
     "read_transform",
@@ -77,3 +80,5 @@ __all__ = [
     "write_png",
     "write_transform",
 ]
+
+register_extras()

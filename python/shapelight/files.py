@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import os
-from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple, Union
+from typing import Any, Callable, Dict, Iterator, List, Optional, Sequence, Tuple, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
+from .errors import InvalidInput
 from .geometry import Geometry, as_transform
 from .progress import Progress, as_callable
 
@@ -32,6 +33,27 @@ def read(
     """
     with as_callable(progress) as report:
         return Geometry(**_core.read_geometry(os.fspath(path), intrinsics, depth_scale, threads, report))
+
+
+def iter_chunks(path: Path, size: int = 1_000_000) -> Iterator[Geometry]:
+    """The points of a LAS, LAZ or COPC file in the order of the file, `size` at a time: the file is never held whole.
+
+        kept = [chunk.select(sl.sample(chunk, ratio=0.1).indices) for chunk in sl.iter_chunks("large.laz")]
+        sl.write("thin.laz", sl.concatenate(kept))
+
+    Raises ImportError when the extra is missing (pip install shapelight[las]), InvalidInput (another format, size),
+    ReadError, FormatError.
+    """
+    name = os.fspath(path)
+    if not name.lower().endswith((".las", ".laz")):
+        raise InvalidInput(f"{name}: only .las and .laz (also .copc.laz) can be read in chunks")
+    if size < 1:
+        raise InvalidInput(f"size: {size}, expected at least 1")
+    try:
+        from .extras import las
+    except ImportError as error:
+        raise ImportError("reading in chunks needs laspy and lazrs: pip install shapelight[las]") from error
+    return (chunk for chunk, _ in las.chunks(name, size))
 
 
 def write(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any, Dict, List, Optional
+from typing import Any, Dict, Iterable, List, Optional
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -154,6 +154,25 @@ class Geometry:
         triangles = self.triangles if m else None
         viewpoint = None if self.viewpoint is None else [float(x) for x in self.viewpoint]
         return _core.GeometryView(self.positions, triangles, self.grid, viewpoint, rest)
+
+
+def concatenate(parts: Iterable[Geometry]) -> Geometry:
+    """The points of several geometries as one cloud, with the attributes that all of them have; pixels and triangles
+    are left behind. What belongs to a file is the first one's. Raises InvalidInput when there is none."""
+    found = list(parts)
+    if not found:
+        raise InvalidInput("concatenate: no geometry, expected at least one")
+    names = [name for name in found[0].attributes if all(name in g.attributes for g in found)]
+    first = found[0]
+    return Geometry(
+        np.concatenate([g.positions for g in found]),
+        attributes={name: np.concatenate([g.attributes[name] for g in found]) for name in names},
+        coordinate_type="float32" if all(g.coordinate_type == "float32" for g in found) else "float64",
+        comments=first.comments,
+        warnings=list(dict.fromkeys(text for g in found for text in g.warnings)),
+        format=first.format,
+        las=first.las,
+    )
 
 
 def as_transform(transform: ArrayLike, name: str = "transform") -> NDArray[np.float64]:
