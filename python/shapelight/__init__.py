@@ -4,7 +4,7 @@
     kept = sl.sample(points, ratio=0.1).indices
 """
 
-from ._core import __version__
+from ._core import version as __version__
 from .errors import (
     BudgetExceeded,
     Error,

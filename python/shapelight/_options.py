@@ -123,6 +123,21 @@ class RegisterOptions(TypedDict, total=False):
     """Seed of the samplers that draw at random. (0)"""
 
 
+class RenderOptions(TypedDict, total=False):
+    """Options of render()."""
+
+    width: int
+    """Width of the picture. [pixels] (1200)"""
+    height: int
+    """Height of the picture. [pixels] (900)"""
+    supersample: int
+    """Smoothness of edges. [samples per pixel and axis] (2)"""
+    field_of_view: float
+    """Strength of the perspective; 0.1 is orthographic. [deg] (20.0)"""
+    occlusion: float
+    """Darkness of corners and crevices. (1.0)"""
+
+
 class SampleOptions(TypedDict, total=False):
     """Options of sample()."""
 
@@ -186,6 +201,35 @@ class SampleOptions(TypedDict, total=False):
     """Smaller segments join a neighbour. [points] (20)"""
     segment_min_share: float
     """Smaller shares of all vertices join a neighbour. (0.0005)"""
+
+
+class ScanPairOptions(TypedDict, total=False):
+    """Options of scan_pair()."""
+
+    overlap: float
+    """Share of the source's points that the target shows as well. (0.8)"""
+    azimuth: float
+    """Azimuth of the target's camera. [rad] (0.0)"""
+    elevation: float
+    """Elevation of both cameras. [rad] (0.3)"""
+    field_of_view: float
+    """Across the image. [rad] (0.5)"""
+    width: int
+    """Columns of the range image. [pixels] (320)"""
+    height: int
+    """Rows of the range image. [pixels] (320)"""
+    noise: float
+    """Standard deviation of the measured range. [input length unit] (0.0)"""
+    quantization: float
+    """Ranges are multiples of this; 0: exact. [input length unit] (0.0)"""
+    dropout: float
+    """Share of pixels that measure nothing. (0.0)"""
+    max_incidence: float
+    """Flatter surfaces are not seen. [rad] (1.4)"""
+    random_pose: bool
+    """Give the scan a random frame instead of the camera's. (False)"""
+    seed: int
+    """Seed of noise, drop-outs and the random pose. (0)"""
 
 
 class SimplifyOptions(TypedDict, total=False):
@@ -263,3 +307,50 @@ class SimplifyOptions(TypedDict, total=False):
     """Smaller segments join a neighbour. [points] (20)"""
     segment_min_share: float
     """Smaller shares of all vertices join a neighbour. (0.0005)"""
+
+
+class SimplifyQslimOptions(TypedDict, total=False):
+    """Options of simplify_qslim()."""
+
+    placement: Literal["input", "optimal"]
+    """Where vertices may lie. (input)"""
+    boundary_weight: float
+    """Weight of the planes that hold borders in place. (1.0)"""
+
+
+class SimplifySsimOptions(TypedDict, total=False):
+    """Options of simplify_ssim()."""
+
+    placement: Literal["input", "optimal"]
+    """Where vertices may lie. (input)"""
+    sample_weight: float
+    """Factor on the cost of removing a sample. (1.5)"""
+    boundary_weight: float
+    """Weight of the error of borders. (1.0)"""
+    normal_weight: float
+    """Weight of the error of normals. (0.1)"""
+    pre_collapse: float
+    """Quadrics collapse to this multiple of the target; 1: all the way. (3.0)"""
+    sweeps: int
+    """Rounds of edge flips and vertex moves at the end. [rounds] (4)"""
+
+
+class VirtualScanOptions(TypedDict, total=False):
+    """Options of virtual_scan()."""
+
+    width: int
+    """Columns of the range image. [pixels] (320)"""
+    height: int
+    """Rows of the range image. [pixels] (320)"""
+    noise: float
+    """Standard deviation of the measured range. [input length unit] (0.0)"""
+    quantization: float
+    """Ranges are multiples of this; 0: exact. [input length unit] (0.0)"""
+    dropout: float
+    """Share of pixels that measure nothing. (0.0)"""
+    max_incidence: float
+    """Flatter surfaces are not seen. [rad] (1.4)"""
+    random_pose: bool
+    """Give the scan a random frame instead of the camera's. (False)"""
+    seed: int
+    """Seed of noise, drop-outs and the random pose. (0)"""

@@ -99,7 +99,7 @@ class Geometry:
         if self.grid is not None:
             self.grid = as_indices(self.grid, "grid", (-1, -1))
         if self.viewpoint is not None:
-            self.viewpoint = as_points([self.viewpoint], "viewpoint")[0]  # type: ignore[list-item]
+            self.viewpoint = as_points([self.viewpoint], "viewpoint")[0]
 
     @property
     def kind(self) -> str:

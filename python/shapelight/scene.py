@@ -22,9 +22,11 @@ from .errors import InvalidInput, WriteError
 from .geometry import Geometry, as_indices, as_points
 from .interop import as_geometry
 from .pictures import Picture, distinct_color, image_grid, render, write_png
-from .results import AlignResult, FieldsResult, RegisterResult, SampleResult, SimplifyResult
+from .results import AlignResult, FieldsResult, RegisterResult, Result, SampleResult, SimplifyResult
+from .thinning import thin
 
 T = TypeVar("T")
+MOST_POINTS = 300_000  # of a scene in a browser; a notebook grows by less than 10 MB
 OVERLAID = ((0.16, 0.42, 0.75), (0.92, 0.50, 0.13))  # target and source: apart in hue and in lightness
 
 
@@ -48,6 +50,11 @@ class Scene:
     view: str
     height: int
     interactive: bool
+
+    def shown(self) -> Scene:
+        """The scene without points that nobody would see, which its captions tell."""
+        most = MOST_POINTS // len(self.panels)
+        return replace(self, panels=[_thinned(panel, most) for panel in self.panels])
 
     def picture(self, *, width: int = 1000, height: Optional[int] = None) -> Picture:
         """(height, width, 3) uint8, drawn by `render`. [pixels]"""
@@ -75,15 +82,17 @@ class Scene:
             raise InvalidInput(f"{target}: expected .html or .png")
 
     def _repr_html_(self) -> str:
+        shown = self.shown()
         if self.interactive:
             from .viewer import interactive_html
 
-            return interactive_html(self.panels, self.view, self.height)
+            return interactive_html(shown.panels, self.view, self.height)
         with tempfile.TemporaryDirectory() as folder:
             file = Path(folder) / "scene.png"
-            write_png(file, self.picture(width=2000, height=2 * self.height))
+            write_png(file, shown.picture(width=2000, height=2 * self.height))
             data = base64.b64encode(file.read_bytes()).decode()
-        return f'<img style="width:100%;max-width:1000px" alt="{html.escape(repr(self))}" src="data:image/png;base64,{data}">'
+        style = "width:100%;max-width:1000px"
+        return f'<img style="{style}" alt="{html.escape(repr(self))}" src="data:image/png;base64,{data}">'
 
     def __repr__(self) -> str:
         return f"Scene({'; '.join(p.title or repr(p.geometry) for p in self.panels)})"
@@ -139,6 +148,11 @@ def panels_of(item: Any) -> List[Panel]:
 
 
 @panels_of.register
+def _(result: Result) -> List[Panel]:
+    return []  # numbers only
+
+
+@panels_of.register
 def _(result: SampleResult) -> List[Panel]:
     title = f"{len(result.indices):,} of {len(result.geometry):,} points"
     return [Panel(result.geometry, dots=result.points, title=title)]
@@ -171,12 +185,10 @@ def _(result: AlignResult) -> List[Panel]:
 
 def html_of(item: Any) -> Optional[str]:
     """What a notebook shows of a geometry or a result; None: its repr."""
-    has_scene = isinstance(item, Geometry) or panels_of.dispatch(type(item)) is not panels_of.dispatch(object)
-    if not has_scene or not (panels := panels_of(item)) or not all(np.isfinite(p.geometry.diagonal) for p in panels):
+    try:
+        return f"{show(item)._repr_html_()}<pre>{html.escape(repr(item))}</pre>"
+    except InvalidInput:  # nothing to draw
         return None
-    if not any(np.isfinite(p.geometry.positions).all(axis=1).any() for p in panels):
-        return None
-    return f"{show(item)._repr_html_()}<pre>{html.escape(repr(item))}</pre>"
 
 
 def _counts(geometry: Geometry) -> str:
@@ -228,6 +240,14 @@ def _dotted(panel: Panel, dots: Any) -> Panel:
     return replace(panel, dots=panel.geometry.positions[indices])
 
 
+def _thinned(panel: Panel, most: int) -> Panel:
+    fewer = thin(panel.geometry, most)
+    if np.isfinite(panel.geometry.positions).all(axis=1).sum() == len(fewer):
+        return replace(panel, geometry=fewer)
+    note = f"shown: {len(fewer):,} of {len(panel.geometry):,}"
+    return replace(panel, geometry=fewer, title=f"{panel.title}; {note}" if panel.title else note)
+
+
 def _overlaid(geometries: List[Geometry], titles: List[str]) -> Panel:
     """One geometry of all; as points unless all are meshes."""
     n = len(geometries)
@@ -248,21 +268,12 @@ def _write_text(target: Path, text: str, overwrite: bool) -> None:
     """Beside the target, then renamed."""
     if target.exists() and not overwrite:
         raise WriteError(f"{target}: exists; overwrite=True replaces it")
+    beside = target.with_name(f".{target.name}.{os.getpid()}")
     try:
-        handle, name = tempfile.mkstemp(dir=target.parent, prefix=target.name)
         try:
-            with os.fdopen(handle, "w", encoding="utf-8") as file:
-                file.write(text)
-            os.chmod(name, 0o666 & ~_umask())
-            os.replace(name, target)
-        except BaseException:
-            os.unlink(name)
-            raise
+            beside.write_text(text, encoding="utf-8")
+            beside.replace(target)
+        finally:
+            beside.unlink(missing_ok=True)
     except OSError as error:
         raise WriteError(f"{target}: {error.strerror}") from None
-
-
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask

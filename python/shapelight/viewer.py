@@ -5,23 +5,22 @@ from __future__ import annotations
 
 import base64
 import html
-from typing import Any, List, Optional, Sequence, Tuple
+from typing import Any, Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .errors import InvalidInput
-from .pictures import FieldColors, color_by_field, map_color, parse_view
+from .pictures import FieldColors, View, color_by_field, map_color, parse_view
 from .scene import Panel
 
-MOST_VERTICES = 300_000  # of a scene; a notebook grows by about 10 MB
+FINE = 30_000  # triangles of a mesh that is drawn smooth
 WIDTH = 1000  # [pixels]
 FIELD_OF_VIEW = 20.0  # [deg] as the pictures have
 NEUTRAL = 0xC9C0B4
 DOTS = 0xDB381A
 
 Points = NDArray[np.float64]
-Triangles = NDArray[np.uint32]
 
 # All panels turn as one: those that the mouse is not over follow the one that it is over.
 LINK_PANELS = """
@@ -47,7 +46,7 @@ join(K3DInstance, 0);
 
 
 def interactive_html(panels: Sequence[Panel], view: str, height: int) -> str:
-    """A frame that holds the whole viewer, and the captions and colour bars under it."""
+    """A frame that holds the whole viewer, and the captions and colour bars under it. Pre: all points are finite."""
     try:
         import k3d
     except ImportError:
@@ -55,15 +54,14 @@ def interactive_html(panels: Sequence[Panel], view: str, height: int) -> str:
 
     boxes = _boxes(panels)
     aspect = WIDTH / len(panels) / height
-    eye = parse_view(view, panels[0].geometry)
-    camera = _camera(eye.direction, eye.up, _extent(panels[0], boxes[0]), aspect)
+    camera = _camera(parse_view(view, panels[0].geometry), panels[0], boxes[0], aspect)
     plots, captions = [], []
     for panel, box in zip(panels, boxes):
         plot = k3d.plot(
             grid_visible=False, axes_helper=0, menu_visibility=False, camera_auto_fit=False, grid_auto_fit=False,
             camera=camera, camera_fov=FIELD_OF_VIEW,
         )  # fmt: skip
-        captions.append(_fill(plot, panel, box, MOST_VERTICES // len(panels)))
+        captions.append(_fill(plot, panel, box))
         plots.append(plot)
     others = ",".join(f"'{base64.b64encode(plot.get_binary_snapshot(6)).decode()}'" for plot in plots[1:])
     link = LINK_PANELS.replace("PANELS", str(len(plots))).replace("OTHERS", others)
@@ -80,78 +78,40 @@ def _boxes(panels: Sequence[Panel]) -> List[Tuple[Points, float]]:
     """Middle and diagonal of each panel: the same ones for all where that lets them be compared."""
     boxes = []
     for panel in panels:
-        finite = panel.geometry.positions[np.isfinite(panel.geometry.positions).all(axis=1)]
-        if not len(finite):
-            raise InvalidInput("show: no finite point")
-        low, high = finite.min(axis=0), finite.max(axis=0)
+        low, high = panel.geometry.positions.min(axis=0), panel.geometry.positions.max(axis=0)
         boxes.append(((low + high) / 2, float(np.linalg.norm(high - low)) or 1.0))
     middle, diagonal = boxes[0]
     alike = all(np.linalg.norm(m - middle) < 0.1 * diagonal and 0.8 < d / diagonal < 1.25 for m, d in boxes)
     return [boxes[0]] * len(boxes) if alike else boxes
 
 
-def _extent(panel: Panel, box: Tuple[Points, float]) -> Points:
-    """(3,) half the panel's size, where its diagonal is 1."""
-    positions = panel.geometry.positions
-    spread = np.nanmax(np.where(np.isfinite(positions), np.abs(positions - box[0]), np.nan), axis=0)
-    return np.asarray(spread / box[1])
-
-
-def _camera(direction: Points, up: Points, half: Points, aspect: float) -> List[float]:
-    """Eye, target and up: as near as the whole box allows."""
-    axes = np.stack([np.cross(direction, up), up, direction])
-    wide, high, deep = np.abs(axes) @ half
+def _camera(eye: View, panel: Panel, box: Tuple[Points, float], aspect: float) -> List[float]:
+    """Eye, target and up: as near as the panel's points allow, where the diagonal is 1 and the middle 0."""
+    axes = np.stack([np.cross(eye.direction, eye.up), eye.up, eye.direction])
+    wide, high, deep = np.abs((panel.geometry.positions - box[0]) / box[1] @ axes.T).max(axis=0)
     distance = max(high, wide / aspect) / np.tan(np.radians(FIELD_OF_VIEW / 2)) + deep
-    return [*(-1.05 * distance * direction), 0.0, 0.0, 0.0, *up]
+    return [*(-1.05 * distance * eye.direction), 0.0, 0.0, 0.0, *eye.up]
 
 
-def _fill(plot: Any, panel: Panel, box: Tuple[Points, float], most: int) -> str:
+def _fill(plot: Any, panel: Panel, box: Tuple[Points, float]) -> str:
     """Adds a panel's objects to its plot. Returns its caption."""
     import k3d
 
     middle, diagonal = box
-    geometry = panel.geometry
-    positions = (geometry.positions - middle) / diagonal
-    colors = None if panel.color == "none" else color_by_field(geometry, panel.color)
-    kept, triangles = thinned(positions, geometry.triangles, most)
-    look: dict[str, Any] = {"color": NEUTRAL, "compression_level": 0}
-    if colors is not None:
-        look.update(color=0xFFFFFF, colors=_packed(colors.colors[kept]))
-    shown = positions[kept].astype(np.float32)
+    shown = ((panel.geometry.positions - middle) / diagonal).astype(np.float32)
+    triangles = panel.geometry.triangles
+    colors = None if panel.color == "none" else color_by_field(panel.geometry, panel.color)
+    look: Dict[str, Any] = {"color": NEUTRAL} if colors is None else {"color": 0xFFFFFF, "colors": _packed(colors.colors)}
     if len(triangles):
-        plot += k3d.mesh(shown, triangles, flat_shading=False, side="double", roughness=0.9, **look)
+        flat = len(triangles) < FINE  # creases show
+        plot += k3d.mesh(shown, triangles, flat_shading=flat, side="double", roughness=0.9, **look)
     else:
         plot += k3d.points(shown, point_size=1.2 * _spacing(shown), shader="3d", roughness=0.9, **look)
     if panel.dots is not None and len(panel.dots):
         dots = ((panel.dots - middle) / diagonal).astype(np.float32)
         size = min(0.008, 0.6 * _spacing(dots))
         plot += k3d.points(dots, point_size=size, color=DOTS, shader="3d", roughness=0.9)
-    note = f"; shown: {len(kept):,} of {len(geometry):,}" if len(kept) < 0.99 * _count(positions) else ""
-    return _caption(panel.title + note, colors)
-
-
-def thinned(positions: Points, triangles: Triangles, most: int) -> Tuple[NDArray[np.intp], Triangles]:
-    """Indices of at most `most` finite points, and the triangles between them: above that, the first point of each
-    cell of a grid stands for the cell's points."""
-    finite = np.flatnonzero(np.isfinite(positions).all(axis=1))
-    kept, cell_of = finite, np.arange(len(finite))
-    size = 0.3 / np.sqrt(most)  # of a surface, where the diagonal is 1
-    while len(kept) > most:
-        cells = np.floor(positions[finite] / size).astype(np.int64) + (1 << 20)
-        keys = (cells[:, 0] << 42) + (cells[:, 1] << 21) + cells[:, 2]
-        _, first, cell_of = np.unique(keys, return_index=True, return_inverse=True)
-        kept = finite[first]
-        size *= 1.2
-    place = np.full(len(positions), -1, dtype=np.int64)
-    place[finite] = cell_of
-    corners = place[triangles]
-    a, b, c = corners.T if len(corners) else np.zeros((3, 0), np.int64)
-    whole = (corners >= 0).all(axis=1) & (a != b) & (b != c) & (c != a)
-    return kept, corners[whole].astype(np.uint32)
-
-
-def _count(positions: Points) -> int:
-    return int(np.isfinite(positions).all(axis=1).sum())
+    return _caption(panel.title, colors)
 
 
 def _spacing(points: NDArray[np.float32]) -> float:

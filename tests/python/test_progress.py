@@ -56,7 +56,7 @@ def test_callable_may_call_the_library(points):
 
 
 def test_what_is_no_progress_is_refused(points):
-    with pytest.raises(TypeError):
+    with pytest.raises(sl.InvalidInput, match="a bar of tqdm"):
         sl.sample(points, ratio=0.1, progress=3)
 
 

@@ -171,4 +171,4 @@ def _scan(found: Dict[str, Any]) -> VirtualScan:
 
 
 def _center(sphere: BoundingSphere) -> List[float]:
-    return [float(x) for x in as_points([sphere.center], "center")[0]]  # type: ignore[list-item]
+    return [float(x) for x in as_points([sphere.center], "center")[0]]
