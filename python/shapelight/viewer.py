@@ -106,7 +106,7 @@ def _fill(plot: Any, panel: Panel, box: Tuple[Points, float]) -> str:
         flat = len(triangles) < FINE  # creases show
         plot += k3d.mesh(shown, triangles, flat_shading=flat, side="double", roughness=0.9, **look)
     else:
-        plot += k3d.points(shown, point_size=1.2 * _spacing(shown), shader="3d", roughness=0.9, **look)
+        plot += k3d.points(shown, point_size=1.6 * _spacing(shown), shader="3d", roughness=0.9, **look)
     if panel.dots is not None and len(panel.dots):
         dots = ((panel.dots - middle) / diagonal).astype(np.float32)
         size = min(0.008, 0.6 * _spacing(dots))
