@@ -111,7 +111,7 @@ class Geometry:
     @property
     def diagonal(self) -> float:
         """[input length unit] of the bounding box of the finite points."""
-        return float(self._view().diagonal)
+        return float(self._view(attributes=False).diagonal)
 
     def __len__(self) -> int:
         return len(self.positions)
@@ -135,9 +135,13 @@ class Geometry:
         """A moved copy: p_new = R p_old + t, with normals and viewpoint. `T_new_old` is rigid, (4, 4)."""
         return Geometry(**self._view().transformed(as_transform(T_new_old)))
 
-    def _view(self) -> _core.GeometryView:
-        """What the library reads: positions, triangles and pixels in place, attributes copied."""
+    def _view(self, *, attributes: bool = True) -> _core.GeometryView:
+        """What the library reads: positions and triangles in place, the rest copied; `attributes` where it is needed."""
         n, m = len(self.positions), len(self.triangles)
+        triangles = self.triangles if m else None
+        viewpoint = None if self.viewpoint is None else [float(x) for x in self.viewpoint]
+        if not attributes:
+            return _core.GeometryView(self.positions, triangles, self.grid, viewpoint)
         rest: Dict[str, Any] = {
             "attributes": {k: _column(v, k, n) for k, v in self.attributes.items()},
             "triangle_attributes": {k: _column(v, k, m) for k, v in self.triangle_attributes.items()},
@@ -151,8 +155,6 @@ class Geometry:
             if len(uv) != 3 * m:
                 raise InvalidInput(f"corner_texcoords: {len(uv)} rows, expected three for each of {m} triangles")
             rest["corner_texcoords"] = uv
-        triangles = self.triangles if m else None
-        viewpoint = None if self.viewpoint is None else [float(x) for x in self.viewpoint]
         return _core.GeometryView(self.positions, triangles, self.grid, viewpoint, rest)
 
 

@@ -57,7 +57,7 @@ def sample(
     check_memory("sample", [geometry], max_memory)
     size = as_count("count", count), as_share("ratio", ratio), as_length("spacing", spacing, geometry)
     given = as_numbers("sample", {**options}, geometry)
-    view = geometry._view()
+    view = geometry._view(attributes=False)
     is_partial = False
     with as_callable(progress) as report:
         try:
@@ -91,7 +91,7 @@ def fields(
     geometry = as_geometry(points_or_mesh, faces)
     check_memory("fields", [geometry], max_memory)
     with as_callable(progress) as report:
-        found = _core.fields(geometry._view(), preset, {**options}, threads, report)
+        found = _core.fields(geometry._view(attributes=False), preset, {**options}, threads, report)
     columns = found.pop("attributes")
     whole = replace(geometry, attributes={**geometry.attributes, **columns})
     arrays = {name: columns.get(name, np.zeros(0, np.float32)) for name in FIELD_NAMES}

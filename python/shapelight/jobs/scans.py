@@ -47,8 +47,9 @@ def register(
     check_memory("register", [moving, fixed], max_memory)
     start = None if init is None else as_transform(init, "init")
     given = as_numbers("register", {**options}, fixed)
+    views = moving._view(attributes=False), fixed._view(attributes=False)
     with as_callable(progress) as report:
-        found = _core.register_scans(moving._view(), fixed._view(), start, given, threads, report)
+        found = _core.register_scans(*views, start, given, threads, report)
     result = RegisterResult(**found, source=source, geometry=moving, target=fixed)
     if not result.confidence >= min_confidence:
         raise _withheld(
@@ -83,7 +84,7 @@ def align(
     check_memory("align", geometries, max_memory)
     given = as_numbers("align", {**options}, geometries[0])
     with as_callable(progress) as report:
-        found = _core.align_scans([g._view() for g in geometries], merged, given, threads, report)
+        found = _core.align_scans([g._view(attributes=merged) for g in geometries], merged, given, threads, report)
     found["scans"] = [AlignedScan(**scan) for scan in found["scans"]]
     found["pairs"] = [AlignedPair(**pair) for pair in found["pairs"]]
     cloud = found.pop("merged")

@@ -108,7 +108,8 @@ def metrics(
     """
     first, second = as_geometry(reference), as_geometry(test)
     with as_callable(progress) as report:
-        found = _core.metrics(first._view(), second._view(), distances, {**options}, threads, report)
+        views = first._view(attributes=False), second._view(attributes=False)
+        found = _core.metrics(*views, distances, {**options}, threads, report)
     if found["surfaces"] is not None:
         return surface_distance(found["surfaces"], distances=found["distances"])
     return SamplingQuality(**found["points"], distances=found["distances"])
