@@ -19,6 +19,7 @@ void bind_spatial(nb::module_& module);
 void bind_metrics(nb::module_& module);
 void bind_simplify(nb::module_& module);
 void bind_registration(nb::module_& module);
+void bind_pose_graph(nb::module_& module);
 void bind_synthetic(nb::module_& module);
 void bind_render(nb::module_& module);
 void bind_jobs(nb::module_& module);

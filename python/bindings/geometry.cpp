@@ -91,7 +91,7 @@ RigidTransform to_transform(const PoseArray& pose) {
   if (!rigid) throw InvalidInput("transform: expected a rigid motion: a rotation, a translation, and 0 0 0 1 below");
   RigidTransform transform = RigidTransform::Identity();
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(linear, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const bool exact = (linear * linear.transpose()).isIdentity(1e-15);
+  const bool exact = (linear * linear.transpose()).isIdentity(1e-14);
   transform.linear() = exact ? linear : Eigen::Matrix3d(svd.matrixU() * svd.matrixV().transpose());
   transform.translation() = matrix.topRightCorner<3, 1>();
   return transform;
@@ -223,6 +223,13 @@ void bind_data(nb::module_& module) {
       .def_prop_ro(
           "diagonal", [](const InputView& v) { return bounding_box(v.view.positions).diagonal(); },
           "[input length unit] of the bounding box of the finite points.")
+      .def_prop_ro(
+          "bounding_box",
+          [](const InputView& v) {
+            const BoundingBox box = bounding_box(v.view.positions);
+            return nb::make_tuple(to_numpy(box.min), to_numpy(box.max));
+          },
+          "The lowest and the highest corner, of the finite points.")
       .def(
           "select_points",
           [](const InputView& v, const VectorArray<Index>& indices) {

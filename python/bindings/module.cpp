@@ -19,6 +19,7 @@ NB_MODULE(_core, module) {
   bind_metrics(module);
   bind_simplify(module);
   bind_registration(module);
+  bind_pose_graph(module);
   bind_synthetic(module);
   bind_render(module);
   bind_jobs(module);

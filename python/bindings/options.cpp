@@ -9,6 +9,7 @@ namespace shapelight::python {
 std::string keyword_of(const OptionInfo& info) {
   std::string keyword(info.name);
   std::replace(keyword.begin(), keyword.end(), '-', '_');
+  if (keyword == "lambda") keyword += '_';  // a reserved word
   return keyword;
 }
 

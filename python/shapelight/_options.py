@@ -36,6 +36,15 @@ class AlignOptions(TypedDict, total=False):
     """At the end, move all scans at once. (True)"""
 
 
+class AlignCoarselyOptions(TypedDict, total=False):
+    """Options of align_coarsely()."""
+
+    same_side: bool
+    """The normals of both scans look at their sensors. (False)"""
+    max_hypotheses: int
+    """Distinct poses to return at most. [poses] (8)"""
+
+
 class FieldsOptions(TypedDict, total=False):
     """Options of fields()."""
 
@@ -102,6 +111,30 @@ class MetricsOptions(TypedDict, total=False):
     """Another seed gives other samples. (0)"""
 
 
+class OptimizePoseGraphOptions(TypedDict, total=False):
+    """Options of optimize_pose_graph()."""
+
+    min_confidence: float
+    """Pairs that are less sure are not used. (0.5)"""
+    max_chi_sq: float
+    """Pairs and loops that disagree by more are wrong. (22.46)"""
+    max_iterations: int
+    """Iterations of the last fit at most. [iterations] (100)"""
+
+
+class RefineJointlyOptions(TypedDict, total=False):
+    """Options of refine_jointly()."""
+
+    max_distance: float
+    """Points farther apart do not correspond. [target spacings] (3.0)"""
+    max_slide: float
+    """The same, along the surface. [target spacings] (2.0)"""
+    max_iterations: int
+    """Iterations at most. [iterations] (30)"""
+    tolerance: float
+    """Stop when no scan moves more. [target spacings] (0.01)"""
+
+
 class RegisterOptions(TypedDict, total=False):
     """Options of register()."""
 
@@ -121,6 +154,59 @@ class RegisterOptions(TypedDict, total=False):
     """Pairs farther apart have no say (icp, plane, gicp); 0: a tenth of the diagonal. [input length unit] (0.0)"""
     seed: int
     """Seed of the samplers that draw at random. (0)"""
+
+
+class RegisterByFicpOptions(TypedDict, total=False):
+    """Options of register_by_ficp()."""
+
+    lambda_: float
+    """Exponent of the inlier fraction. (0.95)"""
+    start_lambda: float
+    """Where annealing starts; equal to lambda: pure FICP. (3.0)"""
+    min_fraction: float
+    """Smallest share of the pairs to trust. (0.05)"""
+    max_fraction: float
+    """Largest share of the pairs to trust. (1.0)"""
+    max_iterations: int
+    """Iterations at most, per value of lambda. [iterations] (400)"""
+    rotation_tolerance: float
+    """Stop when a step turns less. [rad] (1e-06)"""
+    translation_tolerance: float
+    """Stop when a step moves less. [diagonals] (1e-06)"""
+
+
+class RegisterByIcpOptions(TypedDict, total=False):
+    """Options of register_by_icp()."""
+
+    metric: Literal["point", "plane", "gicp"]
+    """What a pair of points costs. (plane)"""
+    max_distance: float
+    """Pairs farther apart have no say; 0: a tenth of the diagonal. [input length unit] (0.0)"""
+    max_iterations: int
+    """Iterations at most. [iterations] (100)"""
+    rotation_tolerance: float
+    """Stop when a step turns less. [rad] (1e-06)"""
+    translation_tolerance: float
+    """Stop when a step moves less. [diagonals] (1e-06)"""
+
+
+class RegisterBySoftIcpOptions(TypedDict, total=False):
+    """Options of register_by_soft_icp()."""
+
+    candidates: int
+    """Nearest points each way that a point may be matched with. [points] (1)"""
+    rate: float
+    """Factor by which sigma shrinks. (0.85)"""
+    kappa: float
+    """A pair closer than this outweighs the slack; 0: by the candidates. [sigma] (0.0)"""
+    final_sigma: float
+    """Where annealing ends; 0: by the candidates. [point spacings] (0.0)"""
+    balance_passes: int
+    """Passes of row and column normalisation. [passes] (4)"""
+    max_iterations: int
+    """Iterations at the final sigma at most. [iterations] (60)"""
+    tolerance: float
+    """Stop when a step is smaller. [rad, diagonals] (1e-06)"""
 
 
 class RenderOptions(TypedDict, total=False):

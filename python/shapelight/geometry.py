@@ -113,6 +113,12 @@ class Geometry:
         """[input length unit] of the bounding box of the finite points."""
         return float(self._view(attributes=False).diagonal)
 
+    @property
+    def bounding_box(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Lowest and highest corner, (3,) each [input length unit], of the finite points."""
+        low, high = self._view(attributes=False).bounding_box
+        return low, high
+
     def __len__(self) -> int:
         return len(self.positions)
 

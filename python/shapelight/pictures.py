@@ -27,12 +27,14 @@ Picture = NDArray[np.uint8]
 """(height, width, 3) red, green, blue; the first row on top."""
 
 
+def _is_point(thing: Any) -> bool:
+    return isinstance(thing, (list, tuple, np.ndarray)) and len(thing) == 3 and all(np.isscalar(x) for x in thing)
+
+
 def _several(things: Any) -> List[Any]:
-    """A list of geometries as it is, one geometry (which may be a list of points) as a list of one."""
-    if not isinstance(things, (list, tuple)):
-        return [things]
-    is_points = bool(things) and isinstance(things[0], (list, tuple, np.ndarray)) and np.ndim(things[0]) == 1
-    return [things] if is_points else list(things)
+    """A list of geometries as it is; one geometry, which may be a tuple or a list of points, as a list of one."""
+    is_list = isinstance(things, list) and not (things and _is_point(things[0]))
+    return list(things) if is_list else [things]
 
 
 def _name(thing: Any) -> str:
@@ -45,7 +47,7 @@ def render(
     *,
     color: Union[None, str, Sequence[str]] = None,
     dots: Union[None, GeometryLike, Sequence[GeometryLike]] = None,
-    titles: Optional[Sequence[str]] = None,
+    titles: Union[None, str, Sequence[str]] = None,
     view: str = "auto",
     point_size: float = 0.0,
     dot_size: float = 0.0,
@@ -72,7 +74,7 @@ def render(
     colors = [color or "none"] if color is None or isinstance(color, str) else list(color)
     style = {
         "colors": colors,
-        "titles": [] if titles is None else _several(titles),
+        "titles": [titles] if isinstance(titles, str) else list(titles or ()),
         "view": view,
         "point_size": float(point_size),
         "dot_size": float(dot_size),

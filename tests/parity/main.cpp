@@ -9,4 +9,8 @@ int main(int argc, char** argv) {
   }
   const shapelight::parity::Recorder recorder{argv[1]};
   shapelight::parity::record_jobs(recorder);
+  shapelight::parity::record_simplify(recorder);
+  shapelight::parity::record_registration(recorder);
+  shapelight::parity::record_synthetic(recorder);
+  shapelight::parity::record_render(recorder);
 }

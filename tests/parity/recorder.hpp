@@ -48,5 +48,9 @@ class Recorder {
 
 // One per source file.
 void record_jobs(const Recorder& recorder);
+void record_simplify(const Recorder& recorder);
+void record_registration(const Recorder& recorder);
+void record_synthetic(const Recorder& recorder);
+void record_render(const Recorder& recorder);
 
 }  // namespace shapelight::parity

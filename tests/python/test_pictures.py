@@ -88,3 +88,13 @@ def test_views(cube):
     view = pictures.parse_view("front", cube)
     np.testing.assert_array_equal(view.direction, [0, 0, -1])
     np.testing.assert_array_equal(view.up, [0, 1, 0])
+
+
+def test_a_tuple_is_one_mesh_and_a_list_is_several_things(data):
+    fandisk = sl.read(data / "meshes/fandisk.off")
+    mesh = (fandisk.positions, fandisk.triangles)
+    same = {"width": 160, "height": 120, "captions": False}
+    np.testing.assert_array_equal(sl.render(mesh, **same), sl.render(fandisk, **same))
+    two = sl.render([mesh, fandisk], width=320, height=160)
+    assert two.shape == (160, 320, 3)
+    assert (two != sl.render(mesh, width=320, height=160)).any()

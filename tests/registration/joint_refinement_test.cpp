@@ -194,6 +194,7 @@ TEST(JointRefinement, RefusesWhatMakesNoSense) {
   std::vector<ScanView> views = ring.views;
   views[1].full = &bare;
   EXPECT_THROW((void)refine_jointly(views, ring.pairs, ring.truth), InvalidInput);
+  EXPECT_THROW((void)measure_fit(views[0], views[1], ring.truth[0]), InvalidInput);
   std::stop_source stop;
   stop.request_stop();
   EXPECT_THROW((void)refine_jointly(ring.views, ring.pairs, ring.truth, {}, {0, stop.get_token(), {}}), Cancelled);

@@ -324,6 +324,7 @@ TEST(PoseGraph, RefusesWhatMakesNoSense) {
   refuse([](PoseGraphEdge& e) { e.covariance(2, 2) = 0.0; });
   refuse([](PoseGraphEdge& e) { e.covariance(2, 2) = std::nan(""); });
   refuse([](PoseGraphEdge& e) { e.T_target_source.translation().x() = std::numeric_limits<double>::infinity(); });
+  EXPECT_THROW((void)measure_disagreement(edge(truth, 1, 2), std::span(truth).first(2)), InvalidInput);
   PoseGraphOptions beyond;
   beyond.min_confidence = 2.0;
   EXPECT_THROW((void)optimize_pose_graph(3, {}, beyond), InvalidInput);

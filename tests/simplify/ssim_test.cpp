@@ -153,6 +153,11 @@ TEST_P(Ssim, BadInputIsNamed) {
   TriangleMesh flat = mesh;
   for (Vec3& p : flat.positions) p = Vec3(1.0, 1.0, 1.0);
   EXPECT_THROW((void)simplify(flat, {.vertices = 10}), InvalidInput);
+  const SimplifyTarget target{.vertices = 10};
+  const std::vector<Index> no_vertex = {static_cast<Index>(mesh.positions.size())};
+  EXPECT_THROW((void)simplify_ssim(mesh, target, {.samples = no_vertex}, options()), InvalidInput);
+  EXPECT_THROW((void)simplify_ssim(mesh, target, {.denoised = std::span(mesh.positions).first(5)}, options()),
+               InvalidInput);
 }
 
 TEST(SsimInput, VerticesAreInputVerticesEachOnce) {

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Dict, Optional
+from typing import TYPE_CHECKING, Any, Dict, Optional, Tuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .. import _core
 from ..describe import described
+from ..errors import InvalidInput
 from ..geometry import as_indices, as_points
 from ..interop import GeometryLike, as_geometry
+from ..jobs.quantities import Count, as_count
 from ..progress import Progress, as_callable
 from ..results import Result
 
@@ -43,8 +45,8 @@ def simplify_qslim(
     triangles: Optional[ArrayLike] = None,
     /,
     *,
-    vertices: Optional[int] = None,
-    faces: Optional[int] = None,
+    vertices: Optional[Count] = None,
+    faces: Optional[Count] = None,
     features: Optional[ArrayLike] = None,
     threads: int = 0,
     progress: Progress = None,
@@ -61,7 +63,7 @@ def simplify_qslim(
     Raises InvalidInput (an index out of range, a vertex in use that is not finite, not exactly one target),
     TargetUnreachable (with `reachable`).
     """
-    mesh, size = as_geometry(mesh_or_vertices, triangles)._view(), (vertices or 0, faces or 0)
+    mesh, size = as_geometry(mesh_or_vertices, triangles)._view(attributes=False), _target(vertices, faces)
     with as_callable(progress) as report:
         found = _core.simplify_qslim(mesh, *size, _edges(features), {**options}, threads, report)
     return SimplifiedMesh(**found)
@@ -73,8 +75,8 @@ def simplify_ssim(
     triangles: Optional[ArrayLike] = None,
     /,
     *,
-    vertices: Optional[int] = None,
-    faces: Optional[int] = None,
+    vertices: Optional[Count] = None,
+    faces: Optional[Count] = None,
     samples: Optional[ArrayLike] = None,
     denoised: Optional[ArrayLike] = None,
     features: Optional[ArrayLike] = None,
@@ -95,7 +97,7 @@ def simplify_ssim(
     Raises InvalidInput (an index out of range, a vertex in use that is not finite, not exactly one target),
     TargetUnreachable (with `reachable`).
     """
-    mesh, size = as_geometry(mesh_or_vertices, triangles)._view(), (vertices or 0, faces or 0)
+    mesh, size = as_geometry(mesh_or_vertices, triangles)._view(attributes=False), _target(vertices, faces)
     smooth = None if denoised is None else as_points(denoised, "denoised")
     lines, chosen = _edges(features), _samples(samples)
     with as_callable(progress) as report:
@@ -108,8 +110,8 @@ def simplify_ssim_paper(
     triangles: Optional[ArrayLike] = None,
     /,
     *,
-    vertices: Optional[int] = None,
-    faces: Optional[int] = None,
+    vertices: Optional[Count] = None,
+    faces: Optional[Count] = None,
     samples: ArrayLike,
     features: Optional[ArrayLike] = None,
     threads: int = 0,
@@ -120,10 +122,18 @@ def simplify_ssim_paper(
     Where topology keeps a vertex, the cheapest sample goes instead, so the count is exact. Parameters and errors as of
     `simplify_ssim`.
     """
-    mesh, size = as_geometry(mesh_or_vertices, triangles)._view(), (vertices or 0, faces or 0)
+    mesh, size = as_geometry(mesh_or_vertices, triangles)._view(attributes=False), _target(vertices, faces)
     with as_callable(progress) as report:
         found = _core.simplify_ssim_paper(mesh, *size, _samples(samples), _edges(features), threads, report)
     return SimplifiedMesh(**found)
+
+
+def _target(vertices: Optional[Count], faces: Optional[Count]) -> Tuple[int, int]:
+    counts = {"vertices": as_count("vertices", vertices), "faces": as_count("faces", faces)}
+    for name, count in counts.items():
+        if count is not None and count < 1:
+            raise InvalidInput(f"{name}: {count}, expected 1 or more")
+    return counts["vertices"] or 0, counts["faces"] or 0
 
 
 def _edges(features: Optional[ArrayLike]) -> NDArray[Any]:

@@ -94,9 +94,7 @@ def camera_on_sphere(
     distance       [sphere radii] from the middle; 0: so that the sphere just fits the image
     """
     center = _center(sphere)
-    return VirtualCamera(
-        **_core.camera_on_sphere(center, sphere.radius, azimuth, elevation, field_of_view, distance)
-    )
+    return VirtualCamera(**_core.camera_on_sphere(center, sphere.radius, azimuth, elevation, field_of_view, distance))
 
 
 def ring_of_cameras(
@@ -122,9 +120,10 @@ def virtual_scan(
 
     Both sides of a surface are seen. Raises InvalidInput (options, no triangles, field of view outside (0, pi)).
     """
+    mesh = as_geometry(surface)._view(attributes=False)
     pose, angle = as_transform(camera.T_mesh_camera, "T_mesh_camera"), camera.field_of_view
     with as_callable(progress) as report:
-        found = _core.virtual_scan(as_geometry(surface)._view(), pose, angle, {**options}, threads, report)
+        found = _core.virtual_scan(mesh, pose, angle, {**options}, threads, report)
     return _scan(found)
 
 
@@ -145,9 +144,10 @@ def scan_pair(
     Raises InvalidInput, TargetUnreachable (nothing like that overlap is met).
     """
     geometry = as_geometry(surface)
+    mesh = geometry._view(attributes=False)
     around = bounding_sphere(geometry) if sphere is None else sphere
     with as_callable(progress) as report:
-        found = _core.scan_pair(geometry._view(), _center(around), around.radius, {**options}, threads, report)
+        found = _core.scan_pair(mesh, _center(around), around.radius, {**options}, threads, report)
     return ScanPair(**{**found, "source": _scan(found["source"]), "target": _scan(found["target"])})
 
 
@@ -160,7 +160,7 @@ def scan_overlap(
     progress: Progress = None,
 ) -> float:
     """Share of the source's points within two point spacings of a target point; 0 when either has no point."""
-    moving, fixed = as_geometry(source)._view(), as_geometry(target)._view()
+    moving, fixed = as_geometry(source)._view(attributes=False), as_geometry(target)._view(attributes=False)
     with as_callable(progress) as report:
         pose = as_transform(T_target_source, "T_target_source")
         return float(_core.scan_overlap(moving, fixed, pose, threads, report))
