@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .errors import InvalidInput, WriteError
-from .geometry import Geometry, as_indices, as_points
+from .geometry import Geometry, as_indices
 from .interop import as_geometry
 from .pictures import Picture, distinct_color, image_grid, render, write_png
 from .results import AlignResult, FieldsResult, RegisterResult, Result, SampleResult, SimplifyResult
@@ -113,7 +113,8 @@ def show(
     items        whatever `as_geometry` takes; results of sample, fields, simplify, register and align
     color        field to colour by: an attribute, "rgb", "normal", "x", "y", "z" or "none"; an array of one value or
                  one red, green, blue per point; or a list of such, one for each panel
-    dots         points to draw on top: a SampleResult, (k,) indices or (k, 3) points; or a list, one for each panel
+    dots         points to draw on top: a SampleResult, (k,) indices, or what `as_geometry` takes; or a list, one for
+                 each panel
     titles       captions, one for each panel
     overlay      all items on top of each other in one panel, each in a colour of its own
     view         "auto", "front", "back", "left", "right", "top", "bottom", "iso", or "x,y,z" of the eye
@@ -233,7 +234,7 @@ def _dotted(panel: Panel, dots: Any) -> Panel:
     if isinstance(dots, SampleResult):
         return replace(panel, dots=dots.points)
     if np.ndim(dots) != 1:
-        return replace(panel, dots=as_points(dots, "dots"))
+        return replace(panel, dots=as_geometry(dots).positions)
     indices = as_indices(dots, "dots", (-1,))
     if len(indices) and indices.max() >= len(panel.geometry):
         raise InvalidInput(f"dots: index {indices.max()} >= {len(panel.geometry)} points")

@@ -1,5 +1,5 @@
 """Scenes that can be turned, by K3D-jupyter: a page of one megabyte that needs no network and no notebook extension,
-so that a saved notebook still shows it. trimesh's viewer has no colour per point and no size of points."""
+so that a saved notebook still shows it. trimesh's viewer draws points of one pixel."""
 
 from __future__ import annotations
 
@@ -101,12 +101,14 @@ def _fill(plot: Any, panel: Panel, box: Tuple[Points, float]) -> str:
     shown = ((panel.geometry.positions - middle) / diagonal).astype(np.float32)
     triangles = panel.geometry.triangles
     colors = None if panel.color == "none" else color_by_field(panel.geometry, panel.color)
-    look: Dict[str, Any] = {"color": NEUTRAL} if colors is None else {"color": 0xFFFFFF, "colors": _packed(colors.colors)}
+    look: Dict[str, Any] = {"color": NEUTRAL, "roughness": 0.9}
+    if colors is not None:
+        look.update(color=0xFFFFFF, colors=_packed(colors.colors))
     if len(triangles):
         flat = len(triangles) < FINE  # creases show
-        plot += k3d.mesh(shown, triangles, flat_shading=flat, side="double", roughness=0.9, **look)
+        plot += k3d.mesh(shown, triangles, flat_shading=flat, side="double", **look)
     else:
-        plot += k3d.points(shown, point_size=1.6 * _spacing(shown), shader="3d", roughness=0.9, **look)
+        plot += k3d.points(shown, point_size=1.6 * _spacing(shown), shader="3d", **look)
     if panel.dots is not None and len(panel.dots):
         dots = ((panel.dots - middle) / diagonal).astype(np.float32)
         size = min(0.008, 0.6 * _spacing(dots))

@@ -41,7 +41,8 @@ def test_simplify_a_statue(data, tmp_path):
 def test_register_two_scans(data, tmp_path):
     scans = data / "scans"
     pose, merged = tmp_path / "pose.txt", tmp_path / "merged.ply"
-    text = run("register_two_scans.py", scans / "dragonStandRight_24.ply", scans / "dragonStandRight_0.ply", pose, merged)
+    pair = [scans / f"dragonStandRight_{angle}.ply" for angle in (24, 0)]
+    text = run("register_two_scans.py", *pair, pose, merged)
     assert "confidence" in text
     truth = sl.read_transform(scans / "T_dragonStandRight_24_to_0.txt")
     np.testing.assert_allclose(sl.read_transform(pose), truth, atol=0.005)
