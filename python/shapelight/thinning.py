@@ -50,4 +50,4 @@ def _renumbered(triangles: NDArray[np.uint32], place: NDArray[np.int64]) -> NDAr
     corners = place[triangles]
     a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
     whole = (corners >= 0).all(axis=1) & (a != b) & (b != c) & (c != a)
-    return corners[whole].astype(np.uint32)
+    return np.asarray(corners[whole], dtype=np.uint32)
