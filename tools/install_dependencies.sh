@@ -3,11 +3,13 @@
 set -euo pipefail
 
 packages=(
-  build-essential cmake ninja-build           # compiler and build
+  build-essential cmake ninja-build ccache    # compiler and build
   libeigen3-dev libtbb-dev libfmt-dev         # library
   libpng-dev liblzf-dev nlohmann-json3-dev
   libcli11-dev                                # command line
-  libgtest-dev python3                        # tests
+  python3-dev python3-venv                    # Python package
+  dpkg-dev file                               # Debian packages
+  libgtest-dev                                # tests
 )
 missing=()
 for package in "${packages[@]}"; do

@@ -14,26 +14,14 @@ import subprocess
 import sys
 from pathlib import Path
 
+from command_help import parse, plain
+
 MARKED = re.compile(r"(<!-- options: (\S+)(?: / ([^>]+?))? -->\n).*?(<!-- end of options -->)", re.DOTALL)
-FLAGS = re.compile(r"^  (?P<flags>-\S.*?)(?:\s{2,}(?P<meaning>\S.*))?$")
 EXTRAS = re.compile(r"(?: \[(?P<unit>[^\]]+)\])?(?: \((?P<default>[^()]+)\))?$")
 
 
-def parse(text):
-    """{heading: [[flags, meaning], ...]} of a help text; a meaning may stand on the line below its flags."""
-    groups, rows = {}, []
-    for line in text.splitlines():
-        if re.fullmatch(r"\S[^:]*:", line):
-            rows = groups.setdefault(line[:-1], [])
-        elif found := FLAGS.match(line):
-            rows.append([found["flags"], found["meaning"] or ""])
-        elif rows and line.startswith("     "):
-            rows[-1][1] = (rows[-1][1] + " " + line.strip()).strip()
-    return groups
-
-
 def row(flags, meaning):
-    flags = re.sub(r"\{false\}|:\{.*?\}|:INT in \[.*?\]| REQUIRED| TEXT| \.\.\.", "", flags).replace("|", "\\|")
+    flags = plain(flags).replace("|", "\\|")
     extras = EXTRAS.search(meaning)
     text = meaning[:extras.start()].replace("|", "\\|")
     return f"| `{flags}` | {text} | {extras['unit'] or ''} | {extras['default'] or ''} |"

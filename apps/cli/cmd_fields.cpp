@@ -58,8 +58,10 @@ Command add_fields_command(CLI::App& app) {
                    "The input with shape_index, curvedness, illumination, reflectance, segment, importance.")
       ->required()
       ->type_name("OUT");
-  command->add_option("--preset", arguments->preset,
-                      "detail, fast (no NLM, no Retinex) or paper (the literal paper). (detail)");
+  command
+      ->add_option("--preset", arguments->preset,
+                   "detail, fast (no NLM, no Retinex) or paper (the literal paper). (detail)")
+      ->type_name("detail|fast|paper");
   auto flags = std::make_shared<DescribedFlags<FieldsOptions>>(*command, std::initializer_list<std::string_view>{});
   add_common_options(*command, arguments->common);
   return {command, [=](std::stop_token stop) { return run_fields(*arguments, *flags, std::move(stop)); }};

@@ -122,8 +122,10 @@ Command add_sample_command(CLI::App& app) {
   command->add_option("--ratio", arguments->ratio, "Share to keep: 0.1 or 10%.")->type_name("R");
   command->add_option("--spacing", arguments->spacing, "Spacing to keep, in the file's units or % of the diagonal.")
       ->type_name("S");
-  command->add_option("--preset", arguments->preset,
-                      "detail, fast (no NLM, no Retinex) or paper (the literal paper). (detail)");
+  command
+      ->add_option("--preset", arguments->preset,
+                   "detail, fast (no NLM, no Retinex) or paper (the literal paper). (detail)")
+      ->type_name("detail|fast|paper");
   command->add_flag("--index-field", arguments->index_field, "Write source_index: the input index of each point.");
   command->add_flag("--order", arguments->order,
                     "Write order: 0 for the point chosen first; every prefix is a sample.");

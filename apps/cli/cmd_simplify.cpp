@@ -159,8 +159,10 @@ Command add_simplify_command(CLI::App& app) {
       ->add_option("--max-error", arguments->max_error,
                    "Largest distance to the input, both ways, in the file's units or % of the diagonal.")
       ->type_name("E");
-  command->add_option("--preset", arguments->preset,
-                      "detail, fast (fewer sweeps), best (more) or paper (the literal paper). (detail)");
+  command
+      ->add_option("--preset", arguments->preset,
+                   "detail, fast (fewer sweeps), best (more) or paper (the literal paper). (detail)")
+      ->type_name("detail|fast|best|paper");
   command->add_flag("--index-field", arguments->index_field, "Write source_index: the input index of each vertex.");
   command->add_flag("--allow-partial", arguments->allow_partial,
                     "Write what can be had when the target cannot be reached (exit code 5).");

@@ -110,15 +110,19 @@ void work_and_tell(Exchange& exchange, const RunContext& context, const std::fun
 }
 
 // Hands progress on and looks for signals until the work is done. What a signal handler or the progress callable
-// raises stops the work and is thrown when it has ended.
-void attend(Exchange& exchange, std::stop_source& stop, const nb::object& callable) {
+// raises stops the work and is thrown when it has ended. Returns the progress reached.
+double attend(Exchange& exchange, std::stop_source& stop, const nb::object& callable) {
   std::exception_ptr raised;
+  double reached = 0.0;
   std::vector<std::pair<double, std::string>> progress;
   for (bool done = false; !done;) {
     done = wait_for_news(exchange, progress);
     if (raised) continue;
     try {
-      for (const auto& [fraction, phase] : progress) callable(fraction, phase);
+      for (const auto& [fraction, phase] : progress) {
+        callable(fraction, phase);
+        reached = fraction;
+      }
       if (PyErr_CheckSignals() != 0) throw nb::python_error();
     } catch (...) {
       raised = std::current_exception();
@@ -126,6 +130,7 @@ void attend(Exchange& exchange, std::stop_source& stop, const nb::object& callab
     }
   }
   if (raised) std::rethrow_exception(raised);
+  return reached;
 }
 
 }  // namespace
@@ -141,11 +146,14 @@ void run_interruptibly(const CallStyle& style, const std::function<void(const Ru
       exchange.changed.notify_one();
     };
   }
+  double reached = 0.0;
   {
     const Worker worker(stop, [&] { work_and_tell(exchange, context, work); });
-    attend(exchange, stop, style.progress);
+    reached = attend(exchange, stop, style.progress);
   }
   if (exchange.failure) std::rethrow_exception(exchange.failure);
+  // A short stage may report nothing; its bar ends full all the same.
+  if (!style.progress.is_none() && reached < 1.0) style.progress(1.0, "");
 }
 
 void bind_run(nb::module_& module) {

@@ -4,6 +4,7 @@
     kept = sl.sample(points, ratio=0.1).indices
 """
 
+from . import stages
 from ._core import version as __version__
 from .errors import (
     BudgetExceeded,
@@ -18,7 +19,7 @@ from .errors import (
 from .extras import register_extras
 from .files import formats, iter_chunks, read, read_transform, register_format, write, write_transform
 from .geometry import Geometry, concatenate
-from .interop import as_geometry
+from .interop import as_geometry, to_laspy, to_open3d, to_pyvista, to_trimesh
 from .jobs import align, fields, metrics, register, sample, simplify
 from .pictures import render, write_png
 from .results import (
@@ -76,6 +77,11 @@ __all__ = [
     "sample",
     "show",
     "simplify",
+    "stages",
+    "to_laspy",
+    "to_open3d",
+    "to_pyvista",
+    "to_trimesh",
     "write",
     "write_png",
     "write_transform",

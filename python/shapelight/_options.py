@@ -45,6 +45,63 @@ class AlignCoarselyOptions(TypedDict, total=False):
     """Distinct poses to return at most. [poses] (8)"""
 
 
+class BuildGraphOptions(TypedDict, total=False):
+    """Options of build_graph()."""
+
+    neighbors: int
+    """Neighbours per point in the graph of a raw cloud. [points] (12)"""
+    depth_jump: float
+    """Longer edges between pixels of a range image are cut. [median pixel spacings] (6.0)"""
+    flag_outliers: bool
+    """Flag strays of a raw cloud, so that they are chosen last. (True)"""
+
+
+class ComputeShapeIndexOptions(TypedDict, total=False):
+    """Options of compute_shape_index()."""
+
+    shape_index: Literal["regularised", "literal"]
+    """Regularised, or the paper's literal equation 2. (regularised)"""
+    curvedness_factor: float
+    """Share of the median curvedness in the regularisation. (3.0)"""
+    noise_factor: float
+    """Share of sigma / h^2 in the regularisation. (1.5)"""
+    flatness: float
+    """Share of 1 / h in the regularisation. (0.02)"""
+
+
+class ComputeSurfaceVariationOptions(TypedDict, total=False):
+    """Options of compute_surface_variation()."""
+
+    variation_method: Literal["nearest", "diffusion"]
+    """How the points around a vertex are gathered. (nearest)"""
+    variation_neighbors: int
+    """Neighbourhood of the surface variation. [points] (30)"""
+
+
+class DecomposeRetinexOptions(TypedDict, total=False):
+    """Options of decompose_retinex()."""
+
+    retinex_sigma: float
+    """Spatial width of the illumination. [mean edge lengths] (3.0)"""
+    retinex_range_sigma: float
+    """Difference of intensity that counts as an edge. (0.15)"""
+    retinex_rings: int
+    """Support of one bilateral mean. [rings] (4)"""
+    retinex_neighbors: int
+    """Largest number of vertices in one bilateral mean. [points] (80)"""
+
+
+class EstimateCurvaturesOptions(TypedDict, total=False):
+    """Options of estimate_curvatures()."""
+
+    curvature_method: Literal["taubin", "quadric", "normal-field"]
+    """How curvature is estimated. (taubin)"""
+    curvature_passes: int
+    """Averages of the curvature tensor over the 1-ring. (1)"""
+    curvature_neighbors: int
+    """Support of the quadric and of the normal field. [points] (20)"""
+
+
 class FieldsOptions(TypedDict, total=False):
     """Options of fields()."""
 
@@ -102,6 +159,15 @@ class FieldsOptions(TypedDict, total=False):
     """Smaller shares of all vertices join a neighbour. (0.0005)"""
 
 
+class MeasureSurfaceDistanceOptions(TypedDict, total=False):
+    """Options of measure_surface_distance()."""
+
+    samples: int
+    """Samples per surface; 0: ten per vertex of the larger, at least 100000. [points] (0)"""
+    seed: int
+    """Another seed gives other samples. (0)"""
+
+
 class MetricsOptions(TypedDict, total=False):
     """Options of metrics()."""
 
@@ -109,6 +175,17 @@ class MetricsOptions(TypedDict, total=False):
     """Samples per surface; 0: ten per vertex of the larger, at least 100000. [points] (0)"""
     seed: int
     """Another seed gives other samples. (0)"""
+
+
+class NonLocalMeansOptions(TypedDict, total=False):
+    """Options of non_local_means()."""
+
+    nlm_rings: int
+    """Window in which similar patches are looked for. [rings] (3)"""
+    nlm_candidates: int
+    """Largest number of patches compared with each. [points] (64)"""
+    nlm_bandwidth_sq: float
+    """Patch distance that counts as similar; 0: automatic. [field unit squared] (0.0)"""
 
 
 class OptimizePoseGraphOptions(TypedDict, total=False):
@@ -289,6 +366,69 @@ class SampleOptions(TypedDict, total=False):
     """Smaller shares of all vertices join a neighbour. (0.0005)"""
 
 
+class SampleByShapeOptions(TypedDict, total=False):
+    """Options of sample_by_shape()."""
+
+    local_weight: float
+    """Share of points chosen for local detail (the paper's T). (0.65)"""
+
+
+class SampleCovarianceOptions(TypedDict, total=False):
+    """Options of sample_covariance()."""
+
+
+class SampleNormalSpaceOptions(TypedDict, total=False):
+    """Options of sample_normal_space()."""
+
+    seed: int
+    """Seed of the random numbers. (0)"""
+    normal_collars: int
+    """Rings that cut the sphere of normals from pole to pole. [rings of cells] (9)"""
+
+
+class SamplePaperOptions(TypedDict, total=False):
+    """Options of sample_paper()."""
+
+    local_weight: float
+    """Share of points chosen for local detail (the paper's T). (0.65)"""
+    voxel_size: float
+    """Voxels of the paper's global sampling; 0: from area and count. [input length units] (0.0)"""
+
+
+class SamplePoissonOptions(TypedDict, total=False):
+    """Options of sample_poisson()."""
+
+    seed: int
+    """Seed of the random numbers. (0)"""
+    poisson_passes: int
+    """Tries to find the radius that gives the count. [passes] (6)"""
+
+
+class SampleRandomOptions(TypedDict, total=False):
+    """Options of sample_random()."""
+
+    seed: int
+    """Seed of the random numbers. (0)"""
+    random_area_weighted: bool
+    """Draw in proportion to the surface area of a point. (False)"""
+
+
+class SampleStratifiedOptions(TypedDict, total=False):
+    """Options of sample_stratified()."""
+
+    seed: int
+    """Seed of the random numbers. (0)"""
+    stratified_suppression: float
+    """Samples nearer than this to another are dropped. [stratum edges] (0.5)"""
+
+
+class SampleVoxelOptions(TypedDict, total=False):
+    """Options of sample_voxel()."""
+
+    voxel_fill_share: float
+    """Share of an exact count that goes to the largest gaps. (0.15)"""
+
+
 class ScanPairOptions(TypedDict, total=False):
     """Options of scan_pair()."""
 
@@ -316,6 +456,17 @@ class ScanPairOptions(TypedDict, total=False):
     """Give the scan a random frame instead of the camera's. (False)"""
     seed: int
     """Seed of noise, drop-outs and the random pose. (0)"""
+
+
+class SegmentFieldOptions(TypedDict, total=False):
+    """Options of segment_field()."""
+
+    segment_scale: float
+    """Preference for large segments, k of tau = k / size. (0.5)"""
+    segment_min_points: int
+    """Smaller segments join a neighbour. [points] (20)"""
+    segment_min_share: float
+    """Smaller shares of all vertices join a neighbour. (0.0005)"""
 
 
 class SimplifyOptions(TypedDict, total=False):
@@ -419,6 +570,17 @@ class SimplifySsimOptions(TypedDict, total=False):
     """Quadrics collapse to this multiple of the target; 1: all the way. (3.0)"""
     sweeps: int
     """Rounds of edge flips and vertex moves at the end. [rounds] (4)"""
+
+
+class SmoothPositionsOptions(TypedDict, total=False):
+    """Options of smooth_positions()."""
+
+    smoothing_iterations: int
+    """Steps inwards and back. (15)"""
+    smoothing_shrink: float
+    """Share of the way to the neighbours' mean. (0.5)"""
+    smoothing_inflate: float
+    """The same, backwards. (-0.53)"""
 
 
 class VirtualScanOptions(TypedDict, total=False):

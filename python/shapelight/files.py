@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import os
-from typing import Any, Callable, Dict, Iterator, List, Optional, Sequence, Tuple, Union
+from typing import Any, Callable, Dict, Iterator, List, Optional, Protocol, Sequence, Tuple, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
-from .errors import InvalidInput
+from .errors import FormatError, InvalidInput
 from .geometry import Geometry, as_transform
 from .progress import Progress, as_callable
 
@@ -31,8 +31,12 @@ def read(
 
     Raises ReadError (missing, unreadable), FormatError (malformed or unsupported; names the place).
     """
+    name = os.fspath(path)
+    reader = _readers.get(os.path.splitext(name)[1].lower())
     with as_callable(progress) as report:
-        return Geometry(**_core.read_geometry(os.fspath(path), intrinsics, depth_scale, threads, report))
+        if reader is not None:
+            return _read_here(reader, name, report)
+        return Geometry(**_core.read_geometry(name, intrinsics, depth_scale, threads, report))
 
 
 def iter_chunks(path: Path, size: int = 1_000_000) -> Iterator[Geometry]:
@@ -82,8 +86,41 @@ def formats() -> List[Dict[str, Any]]:
     return list(_core.supported_formats())
 
 
-Reader = Callable[[str, _core.RunContext], Geometry]
-Writer = Callable[[str, Geometry, _core.RunContext], List[str]]
+class Context(Protocol):
+    """How a reader or writer of a registered format is to run."""
+
+    def check(self) -> None:
+        """Raises when Ctrl-C was pressed."""
+
+    def report(self, fraction: float) -> None:
+        """What share of the work is done."""
+
+
+Reader = Callable[[str, Context], Geometry]
+Writer = Callable[[str, Geometry, Context], List[str]]
+_readers: Dict[str, Reader] = {}  # by extension
+
+
+class _Here:
+    """The caller's own thread, in which Ctrl-C is seen between any two steps of Python."""
+
+    def __init__(self, progress: Optional[Callable[[float, str], Any]]) -> None:
+        self.progress = progress
+
+    def check(self) -> None:
+        pass
+
+    def report(self, fraction: float) -> None:
+        if self.progress is not None:
+            self.progress(fraction, "read")
+
+
+def _read_here(reader: Reader, path: str, progress: Optional[Callable[[float, str], Any]]) -> Geometry:
+    """Without the detour over the library, which would hold the points once more."""
+    geometry = reader(path, _Here(progress))
+    if not np.isfinite(geometry.positions).all(axis=1).any():
+        raise FormatError(f"{path}: {len(geometry)} points and none of them finite, expected at least one")
+    return geometry
 
 
 def register_format(
@@ -102,6 +139,9 @@ def register_format(
     Raises InvalidInput when an extension belongs to another format.
     """
     _core.register_format(name, list(extensions), description, read, write)
+    for extension in extensions:
+        if read is not None:
+            _readers[extension] = read
 
 
 def read_transform(path: Path) -> NDArray[np.float64]:

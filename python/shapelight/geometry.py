@@ -165,8 +165,11 @@ class Geometry:
 
 
 def concatenate(parts: Iterable[Geometry]) -> Geometry:
-    """The points of several geometries as one cloud, with the attributes that all of them have; pixels and triangles
-    are left behind. What belongs to a file is the first one's. Raises InvalidInput when there is none."""
+    """The points of several geometries as one cloud, with the attributes that all of them have.
+
+    Pixels and triangles are left behind; what belongs to a file is the first one's. Raises InvalidInput when there is
+    none.
+    """
     found = list(parts)
     if not found:
         raise InvalidInput("concatenate: no geometry, expected at least one")

@@ -161,7 +161,7 @@ def map_color(map: str, t: ArrayLike) -> NDArray[np.float32]:
 
 def distinct_color(labels: ArrayLike) -> NDArray[np.float32]:
     """(n, 3) sRGB of (n,) labels: neighbours in number differ clearly; grey for negative ones."""
-    return np.asarray(_core.distinct_color(np.ascontiguousarray(labels, dtype=np.int64)))
+    return np.asarray(_core.distinct_color(np.ascontiguousarray(_numbers(labels), dtype=np.int64)))
 
 
 def value_range(values: ArrayLike) -> Tuple[float, float]:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .geometry import Geometry
-from .interop import GeometryLike, like
+from .interop import GeometryLike, like, like_with
 
 
 def _short(value: Any) -> str:
@@ -111,8 +111,8 @@ class FieldsResult(Result):
     def output(self) -> Any:
         """The input with the fields as attributes, in the type that came in where that can hold them, else a
         Geometry."""
-        converted = like(self.source, self.geometry)
-        return self.geometry if isinstance(converted, np.ndarray) else converted
+        names = ("shape_index", "curvedness", "importance")
+        return like_with(self.source, self.geometry, names)
 
 
 @dataclass(frozen=True, repr=False)
@@ -241,7 +241,7 @@ class SimplifyResult(Result):
     def output(self) -> Any:
         """The simplified mesh in the type that came in; (vertices, faces) for arrays."""
         converted = like(self.source, self.geometry)
-        return (self.vertices, self.faces) if isinstance(converted, np.ndarray) else converted
+        return (converted, self.faces) if isinstance(converted, np.ndarray) else converted
 
 
 @dataclass(frozen=True, repr=False)

@@ -8,6 +8,7 @@
 #include <map>
 #include <numeric>
 
+#include "sample/candidates.hpp"
 #include "shapelight/core/error.hpp"
 
 namespace shapelight {
@@ -211,7 +212,7 @@ std::vector<Index> sample_paper(const SurfaceGraph& graph, std::span<const Index
                                 const SamplingTarget& target, const PaperSamplingOptions& options,
                                 const RunContext& context) {
   validate_options(options);
-  validate(target, candidates.size());
+  check_sampling(graph, candidates, target);
   if (target.count == 0) throw InvalidInput("the paper's sampling takes a count or a ratio, not a spacing");
   if (shape_index.size() != graph.size() || segment.size() != graph.size()) {
     throw InvalidInput(fmt::format("paper sampling: {} shape indices and {} segments for {} vertices",

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/parallel.hpp"
+#include "sample/candidates.hpp"
 #include "sample/farthest_tree.hpp"
 #include "shapelight/core/error.hpp"
 
@@ -155,7 +156,7 @@ std::vector<Index> sample_by_shape(const SurfaceGraph& graph, std::span<const In
                                    std::span<const double> density, const SamplingTarget& target,
                                    const ShapeSamplingOptions& options, const RunContext& context) {
   validate_options(options);
-  validate(target, candidates.size());
+  check_sampling(graph, candidates, target);
   check_size(graph, density, "density", false);
   std::vector<double> weights(candidates.size());
   for (std::size_t i = 0; i < candidates.size(); ++i) {
@@ -172,7 +173,7 @@ std::vector<Index> sample_by_shape(const SurfaceGraph& graph, std::span<const In
 
 std::vector<Index> sample_farthest(const SurfaceGraph& graph, std::span<const Index> candidates,
                                    const SamplingTarget& target, const RunContext& context) {
-  validate(target, candidates.size());
+  check_sampling(graph, candidates, target);
   std::vector<Index> picks = rank(positions_of(graph, candidates), {}, 0.0, target, context);
   to_vertices(picks, candidates);
   return picks;

@@ -9,6 +9,11 @@ int main(int argc, char** argv) {
   }
   const shapelight::parity::Recorder recorder{argv[1]};
   shapelight::parity::record_jobs(recorder);
+  shapelight::parity::record_graph(recorder);
+  shapelight::parity::record_features(recorder);
+  shapelight::parity::record_samplers(recorder);
+  shapelight::parity::record_spatial(recorder);
+  shapelight::parity::record_metrics(recorder);
   shapelight::parity::record_simplify(recorder);
   shapelight::parity::record_registration(recorder);
   shapelight::parity::record_synthetic(recorder);

@@ -48,6 +48,11 @@ class Recorder {
 
 // One per source file.
 void record_jobs(const Recorder& recorder);
+void record_graph(const Recorder& recorder);
+void record_features(const Recorder& recorder);
+void record_samplers(const Recorder& recorder);
+void record_spatial(const Recorder& recorder);
+void record_metrics(const Recorder& recorder);
 void record_simplify(const Recorder& recorder);
 void record_registration(const Recorder& recorder);
 void record_synthetic(const Recorder& recorder);

@@ -114,6 +114,7 @@ BAD = {
     r"features: shape \(1, 3\)": lambda m, c: stages.simplify_qslim(m, vertices=100, features=[[1, 2, 3]]),
     "point 0 is not finite": lambda m, c: stages.RegistrationCloud([[np.nan, 0, 0]]),
     "normals": lambda m, c: stages.RegistrationCloud([[1, 0, 0]], [[1, 0, 0]] * 2),
+    "viewpoint: shape": lambda m, c: stages.RegistrationCloud([[1, 0, 0]], viewpoint=[1, 2]),
     r"shape \(3, 3\), expected \(4, 4\)": lambda m, c: stages.register_by_icp(*c, np.eye(3)),
     "expected a rigid motion": lambda m, c: stages.register_by_icp(*c, 2 * np.eye(4)),
     "metric: 'area', expected one of": lambda m, c: stages.register_by_icp(*c, np.eye(4), metric="area"),

@@ -139,6 +139,8 @@ TEST(PaperSampling, RefusesWhatDoesNotFit) {
   const SurfaceGraph graph = test::ellipsoid_graph(20);
   Fields fields = random_fields(20);
   EXPECT_THROW((void)run(graph, fields, 21, 0.65), InvalidInput);
+  EXPECT_THROW((void)sample_paper(graph, std::vector<Index>{0, 20}, fields.shape_index, fields.segment, {.count = 1}),
+               InvalidInput);
   EXPECT_THROW((void)run(graph, fields, 5, 1.5), InvalidInput);
   EXPECT_THROW((void)run(graph, fields, 5, 0.5, -1.0), InvalidInput);
   EXPECT_THROW((void)sample_paper(graph, test::all_vertices(graph), fields.shape_index, fields.segment, {.spacing = 0.1}),

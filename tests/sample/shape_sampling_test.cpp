@@ -167,6 +167,10 @@ TEST(ShapeSampling, RefusesWhatDoesNotFit) {
   EXPECT_THROW((void)sample_by_shape(graph, all, std::vector<double>(19, 1.0), {.count = 5}), InvalidInput);
   EXPECT_THROW((void)sample_by_shape(graph, all, weights, {.count = 21}), InvalidInput);
   EXPECT_THROW((void)sample_by_shape(graph, all, weights, {}), InvalidInput);
+  for (const std::vector<Index>& bad : {std::vector<Index>{0, 20}, std::vector<Index>{3, 2}}) {
+    EXPECT_THROW((void)sample_by_shape(graph, bad, weights, {.count = 1}), InvalidInput);
+    EXPECT_THROW((void)sample_farthest(graph, bad, {.count = 1}), InvalidInput);
+  }
   EXPECT_THROW((void)sample_by_shape(graph, all, weights, {.count = 5}, {.local_weight = 1.1}), InvalidInput);
   for (const double bad : {-1.0, std::nan(""), HUGE_VAL}) {
     weights[7] = bad;

@@ -155,9 +155,9 @@ TEST_P(Ssim, BadInputIsNamed) {
   EXPECT_THROW((void)simplify(flat, {.vertices = 10}), InvalidInput);
   const SimplifyTarget target{.vertices = 10};
   const std::vector<Index> no_vertex = {static_cast<Index>(mesh.positions.size())};
-  EXPECT_THROW((void)simplify_ssim(mesh, target, {.samples = no_vertex}, options()), InvalidInput);
-  EXPECT_THROW((void)simplify_ssim(mesh, target, {.denoised = std::span(mesh.positions).first(5)}, options()),
-               InvalidInput);
+  const std::vector<Vec3> few(5, Vec3::Zero());
+  EXPECT_THROW((void)simplify_ssim(mesh, target, {no_vertex, {}}, options()), InvalidInput);
+  EXPECT_THROW((void)simplify_ssim(mesh, target, {{}, few}, options()), InvalidInput);
 }
 
 TEST(SsimInput, VerticesAreInputVerticesEachOnce) {

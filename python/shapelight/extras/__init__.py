@@ -6,15 +6,14 @@ import importlib
 from importlib.util import find_spec
 from typing import List
 
-from .. import _core
-from ..files import Reader, Writer, register_format
+from ..files import Context, Reader, Writer, register_format
 from ..geometry import Geometry
 
 
 def _reader(module: str) -> Reader:
     """Imports the module, and with it the other library, at the first call."""
 
-    def read(path: str, context: _core.RunContext) -> Geometry:
+    def read(path: str, context: Context) -> Geometry:
         geometry: Geometry = importlib.import_module(f".{module}", __name__).read(path, context)
         return geometry
 
@@ -22,7 +21,7 @@ def _reader(module: str) -> Reader:
 
 
 def _writer(module: str) -> Writer:
-    def write(path: str, geometry: Geometry, context: _core.RunContext) -> List[str]:
+    def write(path: str, geometry: Geometry, context: Context) -> List[str]:
         return list(importlib.import_module(f".{module}", __name__).write(path, geometry, context))
 
     return write

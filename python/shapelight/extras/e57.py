@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from pye57 import libe57
 from pye57.utils import convert_spherical_to_cartesian
 
-from .. import _core
-from ..errors import Error, FormatError
+from ..errors import BudgetExceeded, Error, FormatError, ReadError
+from ..files import Context
 from ..geometry import NO_INDEX, Geometry, concatenate
 
 CHUNK = 200_000  # points between two looks for Ctrl-C
@@ -38,19 +38,24 @@ OUR_NAMES = {
 }
 
 
-def read(path: str, context: _core.RunContext) -> Geometry:
+def read(path: str, context: Context) -> Geometry:
     """Points that were measured, moved by their scan's pose. A single scan keeps its pixels and its viewpoint; of
     several, the attribute `scan` tells the number."""
     place = "header"
     try:
+        open(path, "rb").close()  # a missing file is that, whatever pye57 says
         file = pye57.E57(path)
         scans = []
         for index in range(file.scan_count):
             place = f"scan {index}"
             scans.append(_read_scan(file, index, context))
             context.report((index + 1) / file.scan_count)
-    except (Error, MemoryError):
+    except Error:
         raise
+    except MemoryError as error:
+        raise BudgetExceeded(f"e57: {path}: {place}: more points than there is memory for") from error
+    except OSError as error:
+        raise ReadError(f"e57: {path}: {error}") from error
     except Exception as error:
         reason = (str(error).strip() or type(error).__name__).splitlines()[0]
         raise FormatError(f"e57: {path}: {place}: {reason}") from error
@@ -67,7 +72,7 @@ def read(path: str, context: _core.RunContext) -> Geometry:
     return merged
 
 
-def _read_scan(file: Any, index: int, context: _core.RunContext) -> Geometry:
+def _read_scan(file: Any, index: int, context: Context) -> Geometry:
     header = file.get_header(index)
     names = list(header.point_fields)
     system = next((s for s in (CARTESIAN, SPHERICAL) if set(s) <= set(names)), None)
@@ -94,7 +99,7 @@ def _read_scan(file: Any, index: int, context: _core.RunContext) -> Geometry:
     return Geometry(positions, attributes=attributes, viewpoint=viewpoint, format="e57")
 
 
-def _read_columns(file: Any, header: Any, names: List[str], context: _core.RunContext) -> Dict[str, NDArray[Any]]:
+def _read_columns(file: Any, header: Any, names: List[str], context: Context) -> Dict[str, NDArray[Any]]:
     """Every field as float64, which holds what E57 writers store."""
     count = header.point_count
     columns = {name: np.empty(count) for name in names}

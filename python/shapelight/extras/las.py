@@ -15,14 +15,14 @@ import lazrs
 import numpy as np
 from numpy.typing import NDArray
 
-from .. import _core, files
-from ..errors import Error, FormatError, ReadError, WriteError
-from ..geometry import NO_INDEX, Geometry, LasInfo
+from .. import files
+from ..errors import BudgetExceeded, Error, FormatError, ReadError, WriteError
+from ..geometry import NO_INDEX, Geometry
+from .las_bytes import HEADER_SIZE, POINT_FORMAT, check_table, las_info, read_head
 
 logging.getLogger("laspy").addHandler(logging.NullHandler())  # it logs, and then raises, the same
 
 CHUNK = 100_000  # points between two looks for Ctrl-C
-MOST_PER_CHUNK = 10_000_000  # points; 50,000 is usual
 OUR_NAMES = {
     "key_point": "keypoint",
     "scan_angle_rank": "scan_angle",
@@ -34,13 +34,9 @@ OUR_NAMES = {
     "y_t": "wave_dy",
     "z_t": "wave_dz",
 }
-# Of the public header block (ASPRS LAS 1.4 R15) and of a variable length record. [bytes]
-HEADER_SIZE, POINT_FORMAT, SCALE_AND_OFFSET = 94, 104, 131  # the first is followed by start and number of records
-VLR_HEADER, VLR_USER, VLR_SIZE = 54, 2, 20
-OF_COMPRESSION = (b"laszip encoded", b"copc")
 
 
-def read(path: str, context: _core.RunContext) -> Geometry:
+def read(path: str, context: files.Context) -> Geometry:
     """The whole file; memory is the result and one chunk."""
     whole: Optional[Geometry] = None
     filled = 0
@@ -59,7 +55,7 @@ def read(path: str, context: _core.RunContext) -> Geometry:
     return whole
 
 
-def write(path: str, geometry: Geometry, context: _core.RunContext) -> List[str]:
+def write(path: str, geometry: Geometry, context: files.Context) -> List[str]:
     """Lays the points out as LAS with the library's own writer, then compresses them chunk by chunk."""
     with tempfile.TemporaryDirectory(dir=os.path.dirname(path) or ".") as folder:
         plain = os.path.join(folder, "plain.las")
@@ -74,7 +70,7 @@ def write(path: str, geometry: Geometry, context: _core.RunContext) -> List[str]
     return left_out
 
 
-def _compress(source: BinaryIO, target: BinaryIO, context: _core.RunContext) -> None:
+def _compress(source: BinaryIO, target: BinaryIO, context: files.Context) -> None:
     size, start, number = struct.unpack_from("<HII", source.read(POINT_FORMAT), HEADER_SIZE)
     source.seek(0)
     head = bytearray(source.read(start))
@@ -97,58 +93,33 @@ def _compress(source: BinaryIO, target: BinaryIO, context: _core.RunContext) -> 
 
 def chunks(path: str, size: int) -> Iterator[Tuple[Geometry, int]]:
     """The points in the order of the file, `size` at a time, and the number of all of them."""
-    reader: Any = None
+    place = "header"
     try:
-        with open(path, "rb") as file, laspy.LasReader(file, closefd=False, read_evlrs=False) as reader:
+        with open(path, "rb") as file:
+            head = read_head(file)
+            reader = laspy.LasReader(file, closefd=False, read_evlrs=False)
             count = reader.header.point_count
             if not 0 < count < NO_INDEX:
-                raise FormatError(f"laz: {path}: header: {count} points, expected 1 to {NO_INDEX - 1}")
-            _check_table(file, reader.header)
-            file.seek(0)
-            layout = _Layout(file.read(reader.header.offset_to_point_data), reader.header)
+                raise ValueError(f"{count} points, expected 1 to {NO_INDEX - 1}")
+            if reader.header.are_points_compressed:
+                check_table(file, reader.header)
+            layout = _Layout(head, reader.header)
             file.seek(reader.header.offset_to_point_data)
             while reader.points_read < count:
+                place = f"behind point {reader.points_read}"
                 expected = min(size, count - reader.points_read)
                 chunk = layout.geometry(reader.read_points(size))
                 if len(chunk) < expected:
                     raise FormatError(f"laz: {path}: the file ends {expected - len(chunk)} points early")
                 yield chunk, count
-    except (Error, KeyboardInterrupt, SystemExit, GeneratorExit, MemoryError):
+    except (Error, KeyboardInterrupt, SystemExit, GeneratorExit):
         raise
+    except MemoryError as error:
+        raise BudgetExceeded(f"laz: {path}: {place}: more points than there is memory for") from error
     except OSError as error:
         raise ReadError(f"laz: {path}: {error}") from error
     except BaseException as error:  # panics of lazrs derive from nothing less
-        place = "header" if reader is None else f"behind point {reader.points_read}"
         raise FormatError(f"laz: {path}: {place}: {error}") from error
-
-
-def _check_table(file: BinaryIO, header: Any) -> None:
-    """What lazrs believes, and takes memory for, before it looks at the chunks."""
-    if not header.are_points_compressed:
-        return
-    scheme = lazrs.LazVlr(header.vlrs.get("LasZipVlr")[0].record_data)
-    stride, start, size = header.point_format.size, header.offset_to_point_data, os.fstat(file.fileno()).st_size
-    if scheme.item_size() != stride:
-        raise ValueError(f"compressed records of {scheme.item_size()} bytes, expected {stride}")
-    if not scheme.uses_variable_size_chunks() and not 0 < scheme.chunk_size() <= MOST_PER_CHUNK:
-        raise ValueError(f"chunks of {scheme.chunk_size()} points, expected 1 to {MOST_PER_CHUNK}")
-    end = _at(file, "<q", start)
-    if end == -1:
-        end = _at(file, "<q", size - 8)
-    if not start + 8 <= end <= size - 8:
-        raise ValueError(f"table of chunks at byte {end}, expected {start + 8} to {size - 8}")
-    number = _at(file, "<I", end + 4)
-    if number > (end - start) // stride:  # a chunk begins with a whole point
-        raise ValueError(f"byte {end}: {number} chunks do not fit into {end - start} bytes")
-    file.seek(start)
-    table = lazrs.read_chunk_table(file, scheme)
-    if sum(length for _, length in table) > end - start or sum(points for points, _ in table) < header.point_count:
-        raise ValueError(f"byte {end}: the chunks do not hold {header.point_count} points in {end - start} bytes")
-
-
-def _at(file: BinaryIO, kind: str, offset: int) -> int:
-    file.seek(offset)
-    return int(struct.unpack(kind, file.read(struct.calcsize(kind)))[0])
 
 
 def from_laspy(las: Any) -> Geometry:
@@ -172,7 +143,8 @@ class _Layout:
     def __init__(self, head: bytes, header: Any) -> None:
         self.info = las_info(head)
         self.warnings: List[str] = []
-        typed = {s.format_name() for v in header.vlrs.get("ExtraBytesVlr") for s in v.extra_bytes_structs if s.data_type}
+        described = [d for record in header.vlrs.get("ExtraBytesVlr") for d in record.extra_bytes_structs]
+        typed = {d.format_name() for d in described if d.data_type}
         self.extra = [d.name for d in header.point_format.extra_dimensions if d.name in typed]
         for dimension in header.point_format.extra_dimensions:
             if dimension.name not in typed:
@@ -202,19 +174,3 @@ class _Layout:
             for k, column in enumerate(values.T):
                 columns.setdefault(name if values.shape[1] == 1 else f"{name}_{k}", np.array(column))
         return columns
-
-
-def las_info(head: bytes) -> LasInfo:
-    """Header and records as of the file that the decompressed points would be."""
-    size, _, number = struct.unpack_from("<HII", head, HEADER_SIZE)
-    header, left, records = bytearray(head[:size]), head[size:], []
-    for _ in range(number):
-        end = VLR_HEADER + struct.unpack_from("<H", left, VLR_SIZE)[0]
-        if left[VLR_USER : VLR_USER + 16].rstrip(b"\0") not in OF_COMPRESSION:
-            records.append(left[:end])
-        left = left[end:]
-    vlrs = b"".join(records) + left
-    header[POINT_FORMAT] &= 0x3F  # the upper bits say "compressed"
-    struct.pack_into("<II", header, HEADER_SIZE + 2, size + len(vlrs), len(records))
-    numbers = struct.unpack_from("<6d", header, SCALE_AND_OFFSET)
-    return LasInfo(numbers[:3], numbers[3:], header[POINT_FORMAT], bytes(header), vlrs)

@@ -72,7 +72,7 @@ class RegistrationCloud:
         Raises InvalidInput (a position that is not finite, another number of normals).
         """
         directions = None if normals is None else as_points(normals, "normals")
-        sensor = None if viewpoint is None else [float(x) for x in np.asarray(viewpoint)]
+        sensor = None if viewpoint is None else as_points(np.reshape(viewpoint, (1, -1)), "viewpoint")[0].tolist()
         with as_callable(progress) as report:
             points = as_points(positions, "positions")
             self._cloud: Any = _core.RegistrationCloud(points, directions, sensor, threads, report)
@@ -338,7 +338,7 @@ def assess_pose(
 
     Raises InvalidInput.
     """
-    pose, others = as_transform(T_target_source, "T_target_source"), np.ascontiguousarray(rivals, dtype=np.float64)
+    pose, others = as_transform(T_target_source, "T_target_source"), np.array(rivals, dtype=np.float64, ndmin=1)
     with as_callable(progress) as report:
         found = _core.assess_pose(source._cloud, target._cloud, pose, others, threads, report)
     return PoseAssessment(**found)

@@ -25,6 +25,10 @@ ELSEWHERE = {
     "write_geometry": "shapelight.write",
     "supported_formats": "shapelight.formats",
     "check_writable_format": "shapelight.write",
+    # batch queries are the trees' own
+    "nearest": "stages.KdTree.nearest",
+    "within": "stages.KdTree.within",
+    "first_hits": "stages.TriangleTree.first_hit",
     # presets are a keyword
     "sample_preset": "inspect.signature(shapelight.sample).parameters['preset']",
     "fields_preset": "inspect.signature(shapelight.fields).parameters['preset']",
