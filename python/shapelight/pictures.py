@@ -81,7 +81,7 @@ def render(
         "captions": captions,
     }
     with as_callable(progress) as report:
-        return np.asarray(_core.render(inputs, marks, style, options, threads, report))
+        return np.asarray(_core.render(inputs, marks, style, {**options}, threads, report))
 
 
 def _as_picture(image: ArrayLike) -> Picture:
