@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Fills the option tables of docs/*.md from `shapelight COMMAND --help`, so that they cannot differ from the program.
+"""Fills the option tables of docs/ from `shapelight COMMAND --help`, so that they cannot differ from the program.
 
   tools/option_tables.py [--check] [--shapelight build/release/bin/shapelight]
 
@@ -27,11 +27,25 @@ def row(flags, meaning):
     return f"| `{flags}` | {text} | {extras['unit'] or ''} | {extras['default'] or ''} |"
 
 
+CHOICES = re.compile(r" ([\w-]+(?:\|[\w-]+)+)$")
+
+
+def in_words(flags, meaning):
+    """Choices are named in the meaning: a | in code ends the cell for some readers of Markdown, escaped or not."""
+    if not (choices := CHOICES.search(flags)):
+        return flags, meaning
+    names, extras = choices[1].split("|"), EXTRAS.search(meaning)
+    text = meaning[:extras.start()]
+    if not all(name in text for name in names):
+        text += f" One of {', '.join(f'`{name}`' for name in names)}."
+    return f"{flags[:choices.start()]} NAME", text + extras[0]
+
+
 def table(shapelight, command, group):
     done = subprocess.run([shapelight, command, "--help"], capture_output=True, text=True, check=True)
     groups = parse(done.stdout)
     wanted = [group] if group else [name for name in groups if name != "Positionals"]
-    rows = [row(*option) for name in wanted for option in groups[name] if "--help" not in option[0]]
+    rows = [row(*in_words(*option)) for name in wanted for option in groups[name] if "--help" not in option[0]]
     return "\n".join(["| option | meaning | unit | default |", "| --- | --- | --- | --- |", *rows]) + "\n"
 
 
@@ -41,7 +55,7 @@ def main():
     parser.add_argument("--shapelight", default="build/release/bin/shapelight")
     arguments = parser.parse_args()
     stale = []
-    for page in sorted((Path(__file__).parent.parent / "docs").glob("*.md")):
+    for page in sorted((Path(__file__).parent.parent / "docs").rglob("*.md")):
         old = page.read_text()
         new = MARKED.sub(lambda m: m[1] + table(arguments.shapelight, m[2], m[3]) + m[4], old)
         if new != old:
