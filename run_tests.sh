@@ -16,5 +16,5 @@ tools/build_debian.sh build/dev
 tools/build_test_environment.sh
 source build/venv/bin/activate
 python tools/python_options.py --check
-python -m pytest tests/python tests/packaging tests/docs
+python -m pytest
 tools/build_docs.sh

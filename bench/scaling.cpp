@@ -14,7 +14,6 @@
 #include <ctime>
 #include <fstream>
 #include <functional>
-#include <map>
 #include <memory>
 #include <string>
 #include <utility>
@@ -24,6 +23,7 @@
 #include <malloc.h>
 #endif
 
+#include "finer_mesh.hpp"
 #include "shapelight/denoise/non_local_means.hpp"
 #include "shapelight/features/curvature.hpp"
 #include "shapelight/features/noise.hpp"
@@ -73,29 +73,6 @@ double peak_memory_bytes() {
     if (line.starts_with("VmHWM:")) return 1024.0 * std::strtod(line.c_str() + 6, nullptr);
   }
   return 0.0;
-}
-
-// Cuts every triangle into four at the midpoints of its edges and shifts all points by a smooth wave, small against
-// the edges, so that no part of the finer mesh is flat.
-void subdivide(Geometry& mesh) {
-  std::map<std::pair<Index, Index>, Index> middle;
-  const auto middle_of = [&](Index a, Index b) {
-    const auto [found, is_new] = middle.try_emplace(std::minmax(a, b), static_cast<Index>(mesh.positions.size()));
-    if (is_new) mesh.positions.push_back(0.5 * (mesh.positions[a] + mesh.positions[b]));
-    return found->second;
-  };
-  std::vector<Triangle> finer;
-  finer.reserve(4 * mesh.triangles.size());
-  for (const auto& [a, b, c] : mesh.triangles) {
-    const Index ab = middle_of(a, b), bc = middle_of(b, c), ca = middle_of(c, a);
-    finer.insert(finer.end(), {Triangle{a, ab, ca}, Triangle{ab, b, bc}, Triangle{ca, bc, c}, Triangle{ab, bc, ca}});
-  }
-  mesh.triangles = std::move(finer);
-  const double diagonal = bounding_box(mesh.positions).diagonal();
-  for (Vec3& p : mesh.positions) {
-    const Vec3 phase = p * (400.0 / diagonal);
-    p += 1e-4 * diagonal * Vec3(std::sin(phase.y()), std::sin(phase.z()), std::sin(phase.x()));
-  }
 }
 
 using StageSeconds = std::vector<std::pair<std::string, Seconds>>;
@@ -201,9 +178,8 @@ void print_neighbors(const std::vector<Vec3>& points) {
   };
   std::unique_ptr<KdTree> tree;
   const Seconds build = measure([&] { tree = std::make_unique<KdTree>(points); });
-  row("KdTree::all_nearest", build, measure([&] {
-        (void)tree->all_nearest(kNeighbors, {.max_threads = 1, .stop = {}, .progress = {}});
-      }));
+  row("KdTree::all_nearest", build,
+      measure([&] { (void)tree->all_nearest(kNeighbors, {.max_threads = 1, .stop = {}, .progress = {}}); }));
   row("KdTree::nearest, single queries", build, measure([&] {
         std::vector<Neighbor> found;
         for (const Vec3& p : points) tree->nearest(p, kNeighbors, found);
@@ -224,7 +200,7 @@ int main(int argc, char** argv) {
     const int levels = argc > 2 ? std::atoi(argv[2]) : 1;
     Geometry mesh = read_geometry(argv[1]);
     for (int level = 0; level <= levels; ++level) {
-      if (level > 0) subdivide(mesh);
+      if (level > 0) mesh = bench::finer_mesh(mesh, 2);
       print_stages(mesh);
       Geometry cloud;
       cloud.positions = mesh.positions;

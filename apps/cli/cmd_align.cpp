@@ -122,7 +122,7 @@ class Outputs {
 
  private:
   Geometry merged(const std::vector<Geometry>& scans, const AlignResult& result) {
-    Geometry cloud = merge_scans(scans, result);
+    Geometry cloud = merge_scans(scans, result, run_.context());
     if (!arguments_.merged_spacing.empty()) {
       SampleSize size;
       size.spacing =

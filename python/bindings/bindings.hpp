@@ -8,6 +8,7 @@ namespace shapelight::python {
 namespace nb = nanobind;
 
 void translate_errors();
+void bind_run(nb::module_& module);
 void bind_data(nb::module_& module);
 void bind_io(nb::module_& module);
 void bind_command_line(nb::module_& module);

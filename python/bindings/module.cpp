@@ -5,9 +5,10 @@
 NB_MODULE(_core, module) {
   using namespace shapelight::python;
   module.doc() = "The C++ library. Use it through the package shapelight, which checks and converts what comes in.";
-  module.attr("__version__") = SHAPELIGHT_VERSION;
+  module.attr("version") = SHAPELIGHT_VERSION;
   module.attr("option_tables") = nanobind::dict();
   translate_errors();
+  bind_run(module);
   bind_data(module);
   bind_io(module);
   bind_command_line(module);

@@ -5,7 +5,7 @@
 """
 
 from . import stages
-from ._core import __version__
+from ._core import version as __version__
 from .errors import (
     BudgetExceeded,
     Error,
@@ -36,6 +36,7 @@ from .results import (
     SimplifyResult,
     SurfaceDistance,
 )
+from .scene import Scene, show
 
 __all__ = [
     "AlignResult",
@@ -55,6 +56,7 @@ __all__ = [
     "RelativeDistance",
     "SampleResult",
     "SamplingQuality",
+    "Scene",
     "SimplifyResult",
     "SurfaceDistance",
     "TargetUnreachable",
@@ -73,6 +75,7 @@ __all__ = [
     "register_format",
     "render",
     "sample",
+    "show",
     "simplify",
     "stages",
     "to_laspy",

@@ -99,7 +99,7 @@ class Geometry:
         if self.grid is not None:
             self.grid = as_indices(self.grid, "grid", (-1, -1))
         if self.viewpoint is not None:
-            self.viewpoint = as_points([self.viewpoint], "viewpoint")[0]  # type: ignore[list-item]
+            self.viewpoint = as_points([self.viewpoint], "viewpoint")[0]
 
     @property
     def kind(self) -> str:
@@ -127,6 +127,11 @@ class Geometry:
         pixels = "" if self.grid is None else f", {self.grid.shape[1]} x {self.grid.shape[0]} pixels"
         names = f", attributes {', '.join(self.attributes)}" if self.attributes else ""
         return f"Geometry({self.kind}: {len(self)} points{faces}{pixels}{names})"
+
+    def _repr_html_(self) -> Optional[str]:
+        from .scene import html_of
+
+        return html_of(self)
 
     def select(self, indices: ArrayLike) -> Geometry:
         """The points at `indices` in that order, with their attributes; triangles and pixels are left behind."""

@@ -81,7 +81,7 @@ def render(
         "captions": captions,
     }
     with as_callable(progress) as report:
-        return np.asarray(_core.render(inputs, marks, style, options, threads, report))
+        return np.asarray(_core.render(inputs, marks, style, {**options}, threads, report))
 
 
 def _as_picture(image: ArrayLike) -> Picture:
@@ -178,6 +178,16 @@ def to_oklab(colors: ArrayLike) -> NDArray[np.float64]:
 def from_oklab(lab: ArrayLike) -> NDArray[np.float32]:
     """(n, 3) sRGB of (n, 3) OKLab, clipped to what sRGB can show."""
     return np.asarray(_core.from_oklab(as_points(lab, "lab")))
+
+
+def srgb_to_linear(value: float) -> float:
+    """One channel in [0, 1] from sRGB to linear light."""
+    return float(_core.srgb_to_linear(value))
+
+
+def linear_to_srgb(value: float) -> float:
+    """One channel in [0, 1] from linear light to sRGB."""
+    return float(_core.linear_to_srgb(value))
 
 
 def _numbers(values: ArrayLike) -> NDArray[np.float64]:

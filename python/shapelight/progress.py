@@ -5,6 +5,8 @@ from __future__ import annotations
 import contextlib
 from typing import Any, Callable, Iterator, Optional, Union
 
+from .errors import InvalidInput
+
 Progress = Union[None, bool, Callable[[float, str], Any], Any]
 """None; True (a tqdm bar); a callable (fraction in [0, 1], phase); a tqdm class; or a bar, which is brought to its
 total."""
@@ -41,5 +43,7 @@ def as_callable(progress: Progress) -> Iterator[Optional[Callable[[float, str], 
             yield _Bar(bar)
     elif hasattr(progress, "update"):
         yield _Bar(progress)
-    else:
+    elif callable(progress):
         yield progress
+    else:
+        raise InvalidInput(f"progress: {progress!r}, expected None, True, a callable or a bar of tqdm")

@@ -38,6 +38,11 @@ class Result:
             return f"{type(self).__name__}({line})"
         return f"{type(self).__name__}(\n  " + ",\n".join(shown).replace("\n", "\n  ") + "\n)"
 
+    def _repr_html_(self) -> Optional[str]:
+        from .scene import html_of
+
+        return html_of(self)
+
 
 @dataclass(frozen=True, repr=False)
 class SampleResult(Result):
@@ -227,6 +232,8 @@ class SimplifyResult(Result):
     """Input to result; with max_error or measure."""
     warnings: List[str]
     source: GeometryLike = field(repr=False)
+    original: Geometry = field(repr=False)
+    """The input."""
     geometry: Geometry = field(repr=False)
     """The simplified mesh with the input's attributes."""
 
@@ -284,6 +291,7 @@ class RegisterResult(Result):
     source: GeometryLike = field(repr=False)
     geometry: Geometry = field(repr=False)
     """The source as it came."""
+    target: Geometry = field(repr=False)
 
     @cached_property
     def output(self) -> Any:

@@ -79,7 +79,7 @@ std::vector<double> variation_by_diffusion(const SurfaceGraph& graph, int neighb
 
 std::vector<double> variation_of_nearest(const SurfaceGraph& graph, int neighbors, const RunContext& context) {
   const auto others = static_cast<std::size_t>(neighbors - 1);  // the point itself is one of them
-  const std::vector<Index> nearest = KdTree(graph.position).all_nearest(others, context);
+  const std::vector<Index> nearest = KdTree(graph.position, context).all_nearest(others, context);
   std::vector<double> variation(graph.size());
   parallel::for_chunks(context, graph.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {

@@ -25,10 +25,11 @@ std::uint64_t spread(std::uint64_t v) {
 }
 
 // Least significant digit first; stable, so equal keys stay in the order of the points.
-void radix_sort(std::vector<Keyed>& items) {
+void radix_sort(std::vector<Keyed>& items, const RunContext& context) {
   constexpr int kDigitBits = 11;
   std::vector<Keyed> other(items.size());
   for (int shift = 0; shift < 63; shift += kDigitBits) {
+    context.check();
     std::vector<std::size_t> start(1U << kDigitBits, 0);
     const auto digit = [shift](const Keyed& k) { return (k.morton >> shift) & ((1U << kDigitBits) - 1); };
     for (const Keyed& k : items) ++start[digit(k)];
@@ -62,7 +63,8 @@ std::vector<Keyed> morton_keys(std::span<const Vec3> positions, const BoundingBo
 }
 
 // Points in one Morton cell: by coordinates, so that duplicates meet and the order of the input does not matter.
-void sort_ties(std::vector<Keyed>& keys, std::span<const Vec3> positions) {
+void sort_ties(std::vector<Keyed>& keys, std::span<const Vec3> positions, const RunContext& context) {
+  context.check();
   for (std::size_t begin = 0; begin < keys.size();) {
     std::size_t end = begin + 1;
     while (end < keys.size() && keys[end].morton == keys[begin].morton) ++end;
@@ -85,12 +87,13 @@ BuiltGraph start_graph(std::span<const Vec3> positions, const RunContext& contex
   SurfaceGraph& graph = built.graph;
   const BoundingBox box = bounding_box(positions);
   std::vector<Keyed> keys = morton_keys(positions, box, context);
-  radix_sort(keys);
-  sort_ties(keys, positions);
+  radix_sort(keys, context);
+  sort_ties(keys, positions, context);
 
   graph.origin = box.center();
   graph.vertex_of_point.assign(positions.size(), kNoIndex);
   graph.global_id.reserve(keys.size());
+  context.check();
   for (const Keyed& key : keys) {
     const bool repeated = !graph.global_id.empty() && positions[graph.global_id.back()] == positions[key.point];
     if (!repeated) graph.global_id.push_back(key.point);
@@ -100,6 +103,7 @@ BuiltGraph start_graph(std::span<const Vec3> positions, const RunContext& contex
   built.diagnostics.non_finite_points = positions.size() - keys.size();
   built.diagnostics.duplicate_points = keys.size() - n;
 
+  context.check();
   graph.position.resize(n);
   for (std::size_t i = 0; i < n; ++i) graph.position[i] = positions[graph.global_id[i]] - graph.origin;
   graph.normal.assign(n, Vec3::Zero());

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "shapelight/core/run_context.hpp"
 #include "shapelight/graph/surface_graph.hpp"
 
 namespace shapelight {
@@ -45,6 +46,6 @@ class SignedUnionFind {
 };
 
 /// For every vertex the lowest vertex of its connected component.
-[[nodiscard]] std::vector<Index> component_roots(const SurfaceGraph& graph);
+[[nodiscard]] std::vector<Index> component_roots(const SurfaceGraph& graph, const RunContext& context);
 
 }  // namespace shapelight

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/parallel.hpp"
+#include "core/poll.hpp"
 #include "graph/components.hpp"
 #include "shapelight/spatial/kd_tree.hpp"
 
@@ -28,14 +29,16 @@ struct ComponentSide {
 
 // At the roots of the components.
 std::vector<ComponentSide> component_sides(const SurfaceGraph& graph, const std::vector<Index>& root,
-                                           const std::optional<Vec3>& viewpoint) {
+                                           const std::optional<Vec3>& viewpoint, const RunContext& context) {
   std::vector<ComponentSide> sides(graph.size());
   for (std::size_t i = 0; i < graph.size(); ++i) {
+    poll(context, i);
     ComponentSide& side = sides[root[i]];
     side.center += graph.area[i] * graph.position[i];
     side.area += graph.area[i];
   }
   for (std::size_t i = 0; i < graph.size(); ++i) {
+    poll(context, i);
     ComponentSide& side = sides[root[i]];
     const Vec3 center = viewpoint ? Vec3(*viewpoint - graph.origin) : Vec3(side.center / std::max(side.area, 1e-300));
     Vec3 outward = graph.position[i] - center;
@@ -48,7 +51,7 @@ std::vector<ComponentSide> component_sides(const SurfaceGraph& graph, const std:
 }
 
 // Isolated vertices that lie on the surface all the same, such as those that no triangle of a mesh uses, are no strays.
-void flag_isolated(SurfaceGraph& graph) {
+void flag_isolated(SurfaceGraph& graph, const RunContext& context) {
   std::vector<Index> isolated;
   std::vector<Vec3> connected;
   for (Index i = 0; i < graph.size(); ++i) {
@@ -58,9 +61,11 @@ void flag_isolated(SurfaceGraph& graph) {
       connected.push_back(graph.position[i]);
   }
   if (isolated.empty()) return;
-  const KdTree tree(connected);
+  const KdTree tree(connected, context);
   const double reach = kNearSurface * graph.mean_edge_length;
-  for (const Index i : isolated) {
+  for (std::size_t k = 0; k < isolated.size(); ++k) {
+    poll(context, k);
+    const Index i = isolated[k];
     const Neighbor nearest = tree.nearest(graph.position[i]);
     graph.outlier[i] = nearest.index == kNoIndex || nearest.distance_sq > reach * reach;
   }
@@ -79,9 +84,9 @@ void finish_graph(BuiltGraph& built, const RunContext& context) {
   graph.mean_edge_length = graph.neighbors.empty() ? 0.0 : length_sum / static_cast<double>(graph.neighbors.size());
   graph.total_area = parallel::sum(context, n, [&](std::size_t i) { return graph.area[i]; });
 
-  flag_isolated(graph);
+  flag_isolated(graph, context);
   GraphDiagnostics& counts = built.diagnostics;
-  const std::vector<Index> root = component_roots(graph);
+  const std::vector<Index> root = component_roots(graph, context);
   for (std::size_t i = 0; i < n; ++i) {
     if (graph.neighbors_of(i).empty()) {
       ++counts.isolated_vertices;
@@ -93,17 +98,17 @@ void finish_graph(BuiltGraph& built, const RunContext& context) {
   }
 }
 
-void orient_components(SurfaceGraph& graph, const std::optional<Vec3>& viewpoint) {
-  const std::vector<Index> root = component_roots(graph);
-  const std::vector<ComponentSide> sides = component_sides(graph, root, viewpoint);
+void orient_components(SurfaceGraph& graph, const std::optional<Vec3>& viewpoint, const RunContext& context) {
+  const std::vector<Index> root = component_roots(graph, context);
+  const std::vector<ComponentSide> sides = component_sides(graph, root, viewpoint, context);
   for (std::size_t i = 0; i < graph.size(); ++i) {
     if (sides[root[i]].is_inside_out()) graph.normal[i] = -graph.normal[i];
   }
 }
 
-void orient_as_one(SurfaceGraph& graph, const std::optional<Vec3>& viewpoint) {
+void orient_as_one(SurfaceGraph& graph, const std::optional<Vec3>& viewpoint, const RunContext& context) {
   ComponentSide whole;
-  for (const ComponentSide& side : component_sides(graph, component_roots(graph), viewpoint)) {
+  for (const ComponentSide& side : component_sides(graph, component_roots(graph, context), viewpoint, context)) {
     whole.outward += side.outward;
     whole.magnitude += side.magnitude;
     whole.up += side.up;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/parallel.hpp"
+#include "core/poll.hpp"
 #include "graph/canonical_order.hpp"
 #include "graph/components.hpp"
 #include "graph/finish_graph.hpp"
@@ -28,11 +29,13 @@ struct Corners {
 };
 
 // Triangles over the graph's vertices; degenerate ones and those at non-finite points are gone.
-std::vector<Triangle> usable_triangles(BuiltGraph& built, std::span<const Triangle> triangles) {
+std::vector<Triangle> usable_triangles(BuiltGraph& built, std::span<const Triangle> triangles,
+                                       const RunContext& context) {
   const SurfaceGraph& graph = built.graph;
   std::vector<Triangle> usable;
   usable.reserve(triangles.size());
   for (std::size_t t = 0; t < triangles.size(); ++t) {
+    poll(context, t);
     Triangle mapped;
     bool finite = true;
     for (int c = 0; c < 3; ++c) {
@@ -58,13 +61,16 @@ std::vector<Triangle> usable_triangles(BuiltGraph& built, std::span<const Triang
 Corners collect_corners(std::size_t n, std::span<const Triangle> triangles, const RunContext& context) {
   Corners corners;
   corners.offsets.assign(n + 1, 0);
-  for (const Triangle& t : triangles) {
-    for (const Index v : t) ++corners.offsets[v + 1];
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    poll(context, i);
+    for (const Index v : triangles[i]) ++corners.offsets[v + 1];
   }
   for (std::size_t i = 0; i < n; ++i) corners.offsets[i + 1] += corners.offsets[i];
   corners.items.resize(3 * triangles.size());
   std::vector<std::uint32_t> next(corners.offsets.begin(), corners.offsets.end() - 1);
-  for (const Triangle& t : triangles) {
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    poll(context, i);
+    const Triangle& t = triangles[i];
     for (int c = 0; c < 3; ++c) corners.items[next[t[c]]++] = {t[(c + 1) % 3], t[(c + 2) % 3]};
   }
   parallel::for_chunks(context, n, [&](std::size_t begin, std::size_t end) {
@@ -156,11 +162,12 @@ void fill_edges(BuiltGraph& built, const Corners& corners, const RunContext& con
 }
 
 // Closed components whose signed volume is negative wind inwards.
-void turn_outwards(SurfaceGraph& graph, const Corners& corners) {
-  const std::vector<Index> root = component_roots(graph);
+void turn_outwards(SurfaceGraph& graph, const Corners& corners, const RunContext& context) {
+  const std::vector<Index> root = component_roots(graph, context);
   std::vector<double> volume(graph.size(), 0.0);
   std::vector<std::uint8_t> open(graph.size(), 0);
   for (Index i = 0; i < graph.size(); ++i) {
+    poll(context, i);
     // Relative to a vertex of the component, so that a small part far from the origin loses no digits.
     const Vec3& base = graph.position[root[i]];
     for (const auto& [next, previous] : corners.at(i)) {
@@ -180,10 +187,10 @@ void turn_outwards(SurfaceGraph& graph, const Corners& corners) {
 BuiltGraph graph_from_mesh(std::span<const Vec3> positions, std::span<const Triangle> triangles,
                            const RunContext& context) {
   BuiltGraph built = start_graph(positions, context);
-  const std::vector<Triangle> usable = usable_triangles(built, triangles);
+  const std::vector<Triangle> usable = usable_triangles(built, triangles, context);
   const Corners corners = collect_corners(built.graph.size(), usable, context);
   fill_edges(built, corners, context);
-  turn_outwards(built.graph, corners);
+  turn_outwards(built.graph, corners, context);
   finish_graph(built, context);
   return built;
 }

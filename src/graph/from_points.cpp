@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "core/parallel.hpp"
+#include "core/poll.hpp"
 #include "graph/canonical_order.hpp"
 #include "graph/components.hpp"
 #include "graph/finish_graph.hpp"
@@ -36,6 +37,7 @@ void connect(SurfaceGraph& graph, const NearestTable& nearest, const RunContext&
   // Count i -> j and its mirror j -> i, then sort and drop what was mutual.
   std::vector<std::uint32_t> start(n + 1, 0);
   for (std::size_t i = 0; i < n; ++i) {
+    poll(context, i);
     for (const Index j : nearest.of(i)) {
       ++start[i + 1];
       ++start[j + 1];
@@ -45,6 +47,7 @@ void connect(SurfaceGraph& graph, const NearestTable& nearest, const RunContext&
   std::vector<Index> ends(start[n]);
   std::vector<std::uint32_t> next(start.begin(), start.end() - 1);
   for (std::size_t i = 0; i < n; ++i) {
+    poll(context, i);
     for (const Index j : nearest.of(i)) {
       ends[next[i]++] = j;
       ends[next[j]++] = static_cast<Index>(i);
@@ -63,6 +66,7 @@ void connect(SurfaceGraph& graph, const NearestTable& nearest, const RunContext&
   graph.neighbors.resize(graph.offsets[n]);
   graph.weight.resize(graph.offsets[n]);
   for (std::size_t i = 0; i < n; ++i) {
+    poll(context, i);
     std::copy_n(ends.begin() + start[i], degree[i], graph.neighbors.begin() + graph.offsets[i]);
   }
 }
@@ -96,7 +100,7 @@ double fit_vertex(SurfaceGraph& graph, std::span<const Index> nearest, std::size
 
 // Hoppe et al. 1992: signs spread along the minimum spanning tree of 1 - |n.n'|. Kruskal with signed sets needs no
 // walk over the tree; a counting sort over quantised weights keeps it linear, ties in the order of the vertices.
-void orient_along_spanning_tree(SurfaceGraph& graph) {
+void orient_along_spanning_tree(SurfaceGraph& graph, const RunContext& context) {
   std::vector<std::uint32_t> start(kWeightLevels + 1, 0);
   const auto level = [&](Index i, Index j) {
     const double weight = 1.0 - std::abs(graph.normal[i].dot(graph.normal[j]));
@@ -104,6 +108,7 @@ void orient_along_spanning_tree(SurfaceGraph& graph) {
   };
   const auto for_edges = [&](auto&& visit) {
     for (Index i = 0; i < graph.size(); ++i) {
+      poll(context, i);
       for (const Index j : graph.neighbors_of(i)) {
         if (j > i) visit(i, j);
       }
@@ -115,8 +120,13 @@ void orient_along_spanning_tree(SurfaceGraph& graph) {
   for_edges([&](Index i, Index j) { edges[start[level(i, j)]++] = {i, j}; });
 
   SignedUnionFind sets(graph.size());
-  for (const auto& [i, j] : edges) sets.unite(i, j, graph.normal[i].dot(graph.normal[j]) < 0.0);
+  for (std::size_t e = 0; e < edges.size(); ++e) {
+    poll(context, e);
+    const auto& [i, j] = edges[e];
+    sets.unite(i, j, graph.normal[i].dot(graph.normal[j]) < 0.0);
+  }
   for (Index i = 0; i < graph.size(); ++i) {
+    poll(context, i);
     if (sets.find(i).second != 0) graph.normal[i] = -graph.normal[i];
   }
 }
@@ -165,14 +175,16 @@ void flag_strays(SurfaceGraph& graph, const NearestTable& nearest, std::span<con
   // A stray is near to no dense point, while sparse points of a surface are near to those beside them.
   std::vector<std::uint8_t> near_dense(n, 0);
   for (std::size_t i = 0; i < n; ++i) {
+    poll(context, i);
     if (sparse[i] != Sparse::No) continue;
     for (const Index j : nearest.of(i)) near_dense[j] = 1;
   }
-  const std::vector<Index> root = component_roots(graph);
+  const std::vector<Index> root = component_roots(graph, context);
   std::vector<Index> component_size(n, 0);
   for (const Index r : root) ++component_size[r];
   const std::size_t group = std::min(kStrayGroup, n / 10);
   for (std::size_t i = 0; i < n; ++i) {
+    poll(context, i);
     if (sparse[i] == Sparse::No) continue;
     const bool apart = sparse[i] == Sparse::Globally && component_size[root[i]] <= group;
     const bool floats = near_dense[i] == 0 && height_over(graph, nearest.of(i), i) > kStrayHeight;
@@ -191,7 +203,7 @@ BuiltGraph graph_from_points(std::span<const Vec3> positions, const std::optiona
 
   const RunContext search = context.phase(0.1, 0.6, "find neighbours");
   const auto k = static_cast<std::size_t>(options.neighbors);
-  const NearestTable nearest{k, KdTree(graph.position).all_nearest(k, search)};
+  const NearestTable nearest{k, KdTree(graph.position, search).all_nearest(k, search)};
   connect(graph, nearest, search);
 
   const RunContext fit = context.phase(0.6, 0.8, "estimate normals");
@@ -200,6 +212,7 @@ BuiltGraph graph_from_points(std::span<const Vec3> positions, const std::optiona
     for (std::size_t i = begin; i < end; ++i) radius[i] = fit_vertex(graph, nearest.of(i), i);
   });
   for (std::size_t i = 0; i < n; ++i) {
+    poll(fit, i);
     const auto degree = static_cast<double>(graph.neighbors_of(i).size());
     for (std::size_t e = graph.offsets[i]; e < graph.offsets[i + 1]; ++e) {
       graph.weight[e] = static_cast<float>(6.0 * graph.area[i] / degree);
@@ -207,9 +220,8 @@ BuiltGraph graph_from_points(std::span<const Vec3> positions, const std::optiona
   }
 
   const RunContext orient = context.phase(0.8, 1.0, "orient normals");
-  orient_along_spanning_tree(graph);
-  orient.check();
-  orient_components(graph, viewpoint);
+  orient_along_spanning_tree(graph, orient);
+  orient_components(graph, viewpoint, orient);
   if (options.flag_outliers && n > 0) flag_strays(graph, nearest, radius, orient);
   finish_graph(built, orient);
   return built;

@@ -14,10 +14,12 @@ namespace {
 // Edge lengths of a range image in multiples of what neighbouring pixels are apart.
 class PixelSpacing {
  public:
-  PixelSpacing(std::span<const Vec3> positions, const RangeGrid& grid, const std::optional<Vec3>& viewpoint)
+  PixelSpacing(std::span<const Vec3> positions, const RangeGrid& grid, const std::optional<Vec3>& viewpoint,
+               const RunContext& context)
       : positions_(positions), viewpoint_(viewpoint) {
     std::vector<double> lengths;
     for (std::size_t row = 0; row < grid.height; ++row) {
+      context.check();
       for (std::size_t column = 0; column < grid.width; ++column) {
         const std::size_t pixel = row * grid.width + column;
         if (column + 1 < grid.width) add(grid.pixel[pixel], grid.pixel[pixel + 1], lengths);
@@ -25,6 +27,7 @@ class PixelSpacing {
       }
     }
     if (lengths.empty()) return;
+    context.check();
     std::nth_element(lengths.begin(), lengths.begin() + lengths.size() / 2, lengths.end());
     median_ = lengths[lengths.size() / 2];
   }
@@ -51,8 +54,9 @@ class PixelSpacing {
 }  // namespace
 
 std::vector<Triangle> range_image_triangles(std::span<const Vec3> positions, const RangeGrid& grid,
-                                            const std::optional<Vec3>& viewpoint, double depth_jump) {
-  const PixelSpacing spacing(positions, grid, viewpoint);
+                                            const std::optional<Vec3>& viewpoint, double depth_jump,
+                                            const RunContext& context) {
+  const PixelSpacing spacing(positions, grid, viewpoint, context);
   std::vector<Triangle> triangles;
   const auto add = [&](Index a, Index b, Index c) {
     for (const Index i : {a, b, c}) {
@@ -63,6 +67,7 @@ std::vector<Triangle> range_image_triangles(std::span<const Vec3> positions, con
     if (longest <= depth_jump * std::sqrt(2.0)) triangles.push_back({a, b, c});  // a diagonal is that much longer
   };
   for (std::size_t row = 0; row + 1 < grid.height; ++row) {
+    context.check();
     for (std::size_t column = 0; column + 1 < grid.width; ++column) {
       const Index* top = &grid.pixel[row * grid.width + column];
       const Index* bottom = top + grid.width;
@@ -97,9 +102,9 @@ BuiltGraph graph_from_range_image(std::span<const Vec3> positions, const RangeGr
     }
   }
   const RunContext cut = context.phase(0.0, 0.3, "cut depth jumps");
-  const std::vector<Triangle> triangles = range_image_triangles(positions, grid, viewpoint, options.depth_jump);
+  const std::vector<Triangle> triangles = range_image_triangles(positions, grid, viewpoint, options.depth_jump, cut);
   BuiltGraph built = graph_from_mesh(positions, triangles, context.phase(0.3, 1.0, "connect pixels"));
-  orient_as_one(built.graph, viewpoint);
+  orient_as_one(built.graph, viewpoint, context);
   return built;
 }
 

@@ -24,8 +24,8 @@ struct Format {
   Writer write;
 };
 
-// A writer that is too quick to ask for a stop.
-Writer quick(io::DroppedAttributes (*write)(io::OutputFile&, const Geometry&, const WriteOptions&)) {
+// A writer that leaves it to the file to look for a stop.
+Writer own(io::DroppedAttributes (*write)(io::OutputFile&, const Geometry&, const WriteOptions&)) {
   return [write](io::OutputFile& out, const Geometry& geometry, const WriteOptions& options, const RunContext&) {
     return write(out, geometry, options);
   };
@@ -38,18 +38,18 @@ std::vector<Format>& formats() {
        {".ply"},
        "Polygon File Format: meshes, clouds and Stanford range images",
        io::read_ply,
-       quick(io::write_ply)},
-      {"obj", {".obj"}, "Wavefront OBJ meshes", io::read_obj, quick(io::write_obj)},
-      {"stl", {".stl"}, "Stereolithography meshes", io::read_stl, quick(io::write_stl)},
-      {"off", {".off"}, "Object File Format meshes", io::read_off, quick(io::write_off)},
-      {"pcd", {".pcd"}, "Point Cloud Library clouds and organised clouds", io::read_pcd, quick(io::write_pcd)},
+       own(io::write_ply)},
+      {"obj", {".obj"}, "Wavefront OBJ meshes", io::read_obj, own(io::write_obj)},
+      {"stl", {".stl"}, "Stereolithography meshes", io::read_stl, own(io::write_stl)},
+      {"off", {".off"}, "Object File Format meshes", io::read_off, own(io::write_off)},
+      {"pcd", {".pcd"}, "Point Cloud Library clouds and organised clouds", io::read_pcd, own(io::write_pcd)},
       {"xyz",
        {".xyz", ".txt", ".csv", ".pts", ".asc"},
        "clouds as text, one point per line",
        io::read_xyz,
-       quick(io::write_xyz)},
+       own(io::write_xyz)},
       {"ptx", {".ptx"}, "terrestrial laser scans as text", io::read_ptx, {}},
-      {"las", {".las"}, "ASPRS laser clouds, versions 1.0 to 1.4", io::read_las, quick(io::write_las)},
+      {"las", {".las"}, "ASPRS laser clouds, versions 1.0 to 1.4", io::read_las, own(io::write_las)},
       {"png", {".png"}, "16-bit depth images with camera intrinsics", io::read_depth_png, {}},
       {"osu", {".abs"}, "Ohio State University range images as text", io::read_osu, {}},
       {"rif", {".rif"}, "RIF range images as text", io::read_rif, {}},
@@ -162,9 +162,8 @@ std::vector<std::string> write_geometry(const std::filesystem::path& path, const
                                         const WriteOptions& options, const RunContext& context) {
   check_writable_format(path);
   const Format* format = find_format(path);
-  io::OutputFile out(path, options.overwrite);
+  io::OutputFile out(path, options.overwrite, context);
   std::vector<std::string> dropped = format->write(out, geometry, options, context);
-  context.check();
   out.commit();
   return dropped;
 }

@@ -10,10 +10,12 @@
 
 namespace shapelight::io {
 
-OutputFile::OutputFile(std::filesystem::path target, bool overwrite) : target_(std::move(target)) {
+OutputFile::OutputFile(std::filesystem::path target, bool overwrite, const RunContext& context)
+    : target_(std::move(target)), context_(context) {
   std::error_code ignored;
   if (std::filesystem::is_directory(target_, ignored)) fail("is a folder");
-  if (!overwrite && std::filesystem::exists(target_, ignored)) fail("exists already, not overwritten (--force allows it)");
+  if (!overwrite && std::filesystem::exists(target_, ignored))
+    fail("exists already, not overwritten (--force allows it)");
   temporary_ = target_;
   temporary_ += fmt::format(".{}.part", ::getpid());
   file_ = std::fopen(temporary_.c_str(), "wbx");
@@ -28,10 +30,12 @@ OutputFile::~OutputFile() {
 }
 
 void OutputFile::write(const void* data, std::size_t size) {
+  context_.check();
   if (size != 0 && std::fwrite(data, 1, size, file_) != size) fail(std::generic_category().message(errno));
 }
 
 void OutputFile::commit() {
+  context_.check();
   if (std::fflush(file_) != 0 || ::fsync(::fileno(file_)) != 0) fail(std::generic_category().message(errno));
   std::error_code error;
   std::filesystem::rename(temporary_, target_, error);

@@ -6,14 +6,13 @@
 #include <memory>
 #include <optional>
 
+#include "core/poll.hpp"
 #include "io/scalar_bytes.hpp"
 #include "io/text_columns.hpp"
 #include "shapelight/core/error.hpp"
 
 namespace shapelight::io {
 namespace {
-
-constexpr std::uint64_t kRowsPerPoll = 65536;  // stop requests are looked at this often
 
 enum class Use : std::uint8_t { Scalar, Indices, Texcoords, Skipped };
 
@@ -61,7 +60,7 @@ class BinaryBody final : public PlyBody {
       return;
     }
     for (row_ = 0; row_ < element.count; ++row_) {
-      if (row_ % kRowsPerPoll == 0) source_.context.check();
+      poll(source_.context, row_);
       for (const PlyProperty& property : element.properties) {
         const std::uint64_t items = property.list_count_type ? read_count(property) : 1;
         (void)take(items, scalar_type_size(property.type), property);
@@ -92,7 +91,7 @@ class BinaryBody final : public PlyBody {
       if (uses[p] == Use::Scalar) rows.columns.push_back(make_column(property.name, property.type, element_->count));
     }
     for (row_ = 0; row_ < element_->count; ++row_) {
-      if (row_ % kRowsPerPoll == 0) source_.context.check();
+      poll(source_.context, row_);
       std::size_t column = 0;
       for (std::size_t p = 0; p < uses.size(); ++p) {
         const PlyProperty& property = element_->properties[p];
@@ -253,7 +252,7 @@ class AsciiBody final : public PlyBody {
 
   // Rows are lines; blank lines between them do not count.
   void next_row() {
-    if (row_ % kRowsPerPoll == 0) source_.context.check();
+    poll(source_.context, row_);
     for (;;) {
       const std::optional<std::string_view> line = scanner_.next_line();
       if (!line) {

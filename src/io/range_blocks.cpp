@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "core/poll.hpp"
+
 namespace shapelight::io {
 
 RangeBlocks make_range_blocks(const TextScanner& scanner, std::int64_t rows, std::int64_t columns) {
@@ -21,7 +23,7 @@ void read_flags(TextScanner& scanner, const RunContext& context, std::int64_t va
   const std::size_t count = std::size_t{blocks.width} * blocks.height;
   blocks.valid.resize(count);
   for (std::size_t i = 0; i < count; ++i) {
-    if ((i & 0xffff) == 0) context.check();
+    poll(context, i);
     const std::int64_t flag = scanner.need_integer(scanner.need_token("the flags of all pixels"), "a flag 0 or 1");
     if (flag != 0 && flag != 1) scanner.fail(fmt::format("flag {} of pixel {}, expected 0 or 1", flag, i));
     blocks.valid[i] = flag == valid_flag;
@@ -33,7 +35,7 @@ void read_coordinates(TextScanner& scanner, const RunContext& context, RangeBloc
   for (std::vector<double>& values : blocks.coordinates) {
     values.resize(count);
     for (std::size_t i = 0; i < count; ++i) {
-      if ((i & 0xffff) == 0) context.check();
+      poll(context, i);
       values[i] = scanner.need_double(scanner.need_token("X, Y and Z of all pixels"), "a coordinate");
     }
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/poll.hpp"
 #include "io/formats.hpp"
 #include "io/las_layout.hpp"
 #include "io/scalar_bytes.hpp"
@@ -112,7 +113,7 @@ class LasReader {
   void read_positions() {
     geometry_.positions.resize(count_);
     for (std::size_t i = 0; i < count_; ++i) {
-      if (i % 65536 == 0) source_.context.check();
+      poll(source_.context, i);
       for (int axis = 0; axis < 3; ++axis) {
         const auto raw = load<std::int32_t>(point(i) + 4 * axis);
         geometry_.positions[i][axis] = raw * info_.scale[axis] + info_.offset[axis];

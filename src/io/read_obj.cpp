@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <set>
 
+#include "core/poll.hpp"
 #include "io/narrow_columns.hpp"
 
 /// Wavefront OBJ: point i is the i-th `v` line. Normals become columns when every vertex has exactly one; texture
@@ -30,7 +31,7 @@ class ObjReader {
   Geometry read() {
     while (const std::optional<std::string_view> line = scanner_.next_line()) {
       if (vertex_.count == 0 && line->starts_with('#')) read_comment(line->substr(1));
-      if ((scanner_.line_number() & 0xffff) == 0) source_.context.check();
+      poll(source_.context, scanner_.line_number());
       read_statement(next_token());
     }
     check_references();

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "core/poll.hpp"
 #include "io/narrow_columns.hpp"
 
 /// OFF with the prefixes N (normals), C (colours) and ST (texture coordinates, columns s and t) of Geomview. One
@@ -75,7 +76,7 @@ class OffReader {
   void read_vertices() {
     geometry_.positions.reserve(vertex_count_);
     for (std::size_t i = 0; i < vertex_count_; ++i) {
-      if ((i & 0xffff) == 0) source_.context.check();
+      poll(source_.context, i);
       need_line(i, vertex_count_, "vertices");
       geometry_.positions.push_back(read_vector("x y z"));
       if (has_normals_) normals_.push_back(read_vector("nx ny nz"));
@@ -141,7 +142,7 @@ class OffReader {
   void read_faces() {
     geometry_.triangles.reserve(face_count_);
     for (std::size_t i = 0; i < face_count_; ++i) {
-      if ((i & 0xffff) == 0) source_.context.check();
+      poll(source_.context, i);
       need_line(i, face_count_, "faces");
       const std::int64_t corners = scanner_.need_integer(scanner_.next_token(), "the number of corners");
       if (corners < 3) scanner_.fail(fmt::format("a face with {} corners, expected at least 3", corners));

@@ -6,6 +6,7 @@
 #include <bit>
 #include <numeric>
 
+#include "core/poll.hpp"
 #include "io/formats.hpp"
 #include "io/pcd_header.hpp"
 #include "io/scalar_bytes.hpp"
@@ -71,7 +72,7 @@ class PcdReader {
     }
     bool has_long_rows = false;
     for (std::uint64_t i = 0; i < header_.points; ++i) {
-      if (i % 65536 == 0) source_.context.check();
+      poll(source_.context, i);
       next_row(i);
       auto column = columns.begin();
       for (std::size_t v = 0; v < values; ++v) {

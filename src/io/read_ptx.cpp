@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 
+#include "core/poll.hpp"
 #include "io/narrow_columns.hpp"
 
 /// Leica PTX: scans of a terrestrial scanner, column by column, each with its matrix. All scans are brought into the
@@ -58,7 +59,7 @@ class PtxReader {
     }
     grid_.pixel.assign(pixels, kNoIndex);
     for (std::uint64_t i = 0; i < pixels; ++i) {
-      if ((i & 0xffff) == 0) source_.context.check();
+      poll(source_.context, i);
       if (!scanner_.next_line()) {
         scanner_.fail(fmt::format("the file ends, expected {} points, found {}", pixels, i));
       }

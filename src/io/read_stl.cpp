@@ -3,8 +3,9 @@
 #include <bit>
 #include <cstring>
 
-#include "io/point_welder.hpp"
+#include "core/poll.hpp"
 #include "io/narrow_columns.hpp"
+#include "io/point_welder.hpp"
 
 /// STL, binary and ascii. It lists corners, not vertices: corners with exactly the same coordinates become one point,
 /// and points are in the order of their first appearance. Facet normals follow from the corners and are not kept.
@@ -40,7 +41,7 @@ Geometry read_binary(const Source& source) {
   PointWelder welder(geometry.positions);
   std::size_t with_attributes = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    if ((i & 0xffff) == 0) source.context.check();
+    poll(source.context, i);
     const std::byte* facet = bytes.data() + kHeaderSize + i * kFacetSize;
     Triangle triangle{};
     for (std::size_t k = 0; k < 3; ++k) {
@@ -68,7 +69,7 @@ class AsciiReader {
     PointWelder welder(geometry_.positions);
     bool in_solid = false;
     while (scanner_.next_line()) {
-      if ((scanner_.line_number() & 0xffff) == 0) source_.context.check();
+      poll(source_.context, scanner_.line_number());
       const std::string keyword = lower_case(scanner_.next_token());
       if (keyword == "vertex") {
         read_corner(welder);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "core/poll.hpp"
 #include "io/narrow_columns.hpp"
 
 /// Points as columns of text: .xyz .txt .csv .pts .asc. The separator, a line of column names and the count that
@@ -75,7 +76,7 @@ class XyzReader {
  private:
   void read_rows() {
     while (const std::optional<std::string_view> line = scanner_.next_line()) {
-      if ((scanner_.line_number() & 0xffff) == 0) source_.context.check();
+      poll(source_.context, scanner_.line_number());
       const std::size_t begin = line->find_first_not_of(" \t");
       if (begin == std::string_view::npos) continue;
       const std::string_view text = line->substr(begin);

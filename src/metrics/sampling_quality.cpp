@@ -67,7 +67,7 @@ void measure_features(std::span<const Vec3> reference, std::span<const double> i
   const MeanMax feature_coverage = mean_and_max(coverage, feature);
   quality.feature_coverage_mean = feature_coverage.mean;
   quality.feature_coverage_max = feature_coverage.max;
-  const KdTree tree(reference);
+  const KdTree tree(reference, context);
   quality.feature_share =
       parallel::sum(context, samples.size(),
                     [&](std::size_t i) { return static_cast<double>(feature[tree.nearest(samples[i]).index]); }) /
@@ -120,7 +120,7 @@ SamplingQuality measure_sampling(std::span<const Vec3> reference, std::span<cons
     }
   }
   SamplingQuality quality;
-  const KdTree tree(samples);
+  const KdTree tree(samples, context);
   const std::vector<double> coverage = nearest_distances(tree, reference, context);
   const MeanMax all = mean_and_max(coverage, {});
   quality.coverage_mean = all.mean;
@@ -133,7 +133,7 @@ SamplingQuality measure_sampling(std::span<const Vec3> reference, std::span<cons
 std::vector<double> surface_variation_knn(std::span<const Vec3> points, std::size_t k, const RunContext& context) {
   if (k < 3) throw InvalidInput(fmt::format("surface variation: k = {}, expected at least 3", k));
   require_finite(points, "surface variation");
-  const std::vector<Index> nearest = KdTree(points).all_nearest(k - 1, context);
+  const std::vector<Index> nearest = KdTree(points, context).all_nearest(k - 1, context);
   std::vector<double> variation(points.size());
   parallel::for_chunks(context, points.size(), [&](std::size_t begin, std::size_t end) {
     std::vector<Vec3> offsets;  // from the point itself, so that a far origin costs no digits

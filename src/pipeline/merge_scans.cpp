@@ -38,7 +38,7 @@ void append(AttributeTable& merged, const AttributeTable& more) {
 
 }  // namespace
 
-Geometry merge_scans(std::span<const Geometry> scans, const AlignResult& aligned) {
+Geometry merge_scans(std::span<const Geometry> scans, const AlignResult& aligned, const RunContext& context) {
   if (scans.size() != aligned.scans.size()) {
     throw InvalidInput(fmt::format("merge: {} scans, {} were aligned", scans.size(), aligned.scans.size()));
   }
@@ -46,6 +46,7 @@ Geometry merge_scans(std::span<const Geometry> scans, const AlignResult& aligned
   std::vector<std::uint32_t> scan_of_point;
   merged.coordinate_type = ScalarType::Float32;
   for (std::size_t i = 0; i < scans.size(); ++i) {
+    context.check();
     if (aligned.scans[i].group != 0) continue;
     Geometry points = finite_points(scans[i], aligned.scans[i].T_world_scan);
     if (points.coordinate_type == ScalarType::Float64) merged.coordinate_type = ScalarType::Float64;

@@ -27,11 +27,13 @@ constexpr double kFirstGuess = 0.1;  // share of the vertices at which the searc
 class Simplifier {
  public:
   Simplifier(const GeometryView& geometry, const SimplifyOptions& options, const RunContext& context)
-      : geometry_(geometry), options_(options), surface_(pipeline::make_surface(geometry, options.fields.graph)) {
+      : geometry_(geometry),
+        options_(options),
+        surface_(pipeline::make_surface(geometry, options.fields.graph, context)) {
     const RunContext prepare = context.phase(0.0, 0.3, "prepare");
     reference_ = without_oddities(surface_.mesh, oddities_, prepare);
     if (reference_.mesh.triangles.empty()) throw InvalidInput("the input has no usable face to simplify");
-    features_ = pipeline::texture_seams(geometry.rest(), surface_);
+    features_ = pipeline::texture_seams(geometry.rest(), surface_, prepare);
     if (options.method != SimplifyMethod::Qslim)
       guide_.emplace(geometry, surface_, options, context.phase(0.3, 1.0, ""));
   }
@@ -147,8 +149,8 @@ SimplifiedMesh search_by_error(const Simplifier& simplifier, double bound, Simpl
 }
 
 // Vertices are input vertices bit for bit, or in the input's frame.
-Geometry assemble(const GeometryView& input, const Surface& surface, const SimplifiedMesh& simplified, Placement placement,
-                  const RunContext& context) {
+Geometry assemble(const GeometryView& input, const Surface& surface, const SimplifiedMesh& simplified,
+                  Placement placement, const RunContext& context) {
   Geometry output;
   output.coordinate_type = input.rest().coordinate_type;
   output.viewpoint = input.viewpoint;

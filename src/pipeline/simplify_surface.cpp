@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/poll.hpp"
 #include "shapelight/core/error.hpp"
 
 namespace shapelight::pipeline {
@@ -36,19 +37,21 @@ void turn_to_viewer(const GeometryView& geometry, const Vec3& center, std::vecto
 
 }  // namespace
 
-Surface make_surface(const GeometryView& geometry, const GraphOptions& options) {
+Surface make_surface(const GeometryView& geometry, const GraphOptions& options, const RunContext& context) {
   Surface surface;
   surface.origin = bounding_box(geometry.positions).center();
   surface.mesh.positions.reserve(geometry.size());
+  context.check();
   for (const Vec3& p : geometry.positions) surface.mesh.positions.push_back(p - surface.origin);
   if (geometry.kind() == GeometryKind::RangeImage) {
     check_pixels(geometry);
     surface.mesh.triangles =
-        range_image_triangles(geometry.positions, *geometry.grid, geometry.viewpoint, options.depth_jump);
+        range_image_triangles(geometry.positions, *geometry.grid, geometry.viewpoint, options.depth_jump, context);
     turn_to_viewer(geometry, surface.origin, surface.mesh.triangles);
     return surface;
   }
   for (Index t = 0; t < geometry.triangles.size(); ++t) {
+    poll(context, t);
     bool finite = true;
     for (const Index v : geometry.triangles[t]) {
       if (v >= geometry.size()) {

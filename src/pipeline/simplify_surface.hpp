@@ -19,6 +19,7 @@ struct Surface {
 
 /// The triangles of a mesh, or those that a range image's grid is cut into: towards its viewpoint or, without one,
 /// mostly outwards. Throws InvalidInput for an index out of range.
-[[nodiscard]] Surface make_surface(const GeometryView& geometry, const GraphOptions& options);
+[[nodiscard]] Surface make_surface(const GeometryView& geometry, const GraphOptions& options,
+                                   const RunContext& context);
 
 }  // namespace shapelight::pipeline

@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "core/parallel.hpp"
+#include "core/poll.hpp"
 #include "shapelight/spatial/triangle_tree.hpp"
 
 namespace shapelight::pipeline {
@@ -107,6 +108,7 @@ AttributeTable interpolate_table(const AttributeTable& table, std::span<const Pl
   std::transform(places.begin(), places.end(), nearest.begin(), [](const Place& p) { return p.nearest_corner(); });
   AttributeTable result;
   for (const Column& column : table.columns()) {
+    context.check();
     if (is_label(column)) {
       result.set(column.gather(nearest));
     } else {
@@ -124,6 +126,7 @@ std::vector<Place> places_on(const TriangleTree& tree, const TriangleMesh& surfa
   const std::vector<TriangleTree::Hit> hits = tree.closest(points, context);
   std::vector<Place> places(hits.size());
   for (std::size_t i = 0; i < hits.size(); ++i) {
+    poll(context, i);
     places[i] = {surface.triangles[hits[i].triangle], weights_at(hits[i].point, corners_of(surface, hits[i].triangle))};
   }
   return places;
@@ -138,7 +141,7 @@ struct Atlas {
   std::vector<std::array<Index, 3>> neighbors;  // per face; kNoIndex at seams and borders
   FeatureEdges seams;
 
-  Atlas(const Geometry& geometry, const Surface& surface);
+  Atlas(const Geometry& geometry, const Surface& surface, const RunContext& context);
 
  private:
   void connect(Index face, Index neighbor) {
@@ -146,7 +149,7 @@ struct Atlas {
   }
 };
 
-Atlas::Atlas(const Geometry& geometry, const Surface& surface) {
+Atlas::Atlas(const Geometry& geometry, const Surface& surface, const RunContext& context) {
   struct Side {
     Index low, high, face;
     TexCoord at_low, at_high;
@@ -156,6 +159,7 @@ Atlas::Atlas(const Geometry& geometry, const Surface& surface) {
   sides.reserve(3 * triangles.size());
   neighbors.assign(triangles.size(), {kNoIndex, kNoIndex, kNoIndex});
   for (Index f = 0; f < triangles.size(); ++f) {
+    poll(context, f);
     const TexCoord* uv = &geometry.corner_texcoords[3 * std::size_t{input_triangle(surface, f)}];
     for (std::size_t c = 0; c < 3; ++c) {
       const std::size_t d = (c + 1) % 3;
@@ -163,10 +167,13 @@ Atlas::Atlas(const Geometry& geometry, const Surface& surface) {
       sides.push_back(a < b ? Side{a, b, f, uv[c], uv[d]} : Side{b, a, f, uv[d], uv[c]});
     }
   }
-  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
+  std::size_t compared = 0;
+  std::sort(sides.begin(), sides.end(), [&](const Side& a, const Side& b) {
+    poll(context, compared++);
     return std::tie(a.low, a.high, a.face) < std::tie(b.low, b.high, b.face);
   });
   for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
+    poll(context, begin);
     while (end < sides.size() && sides[end].low == sides[begin].low && sides[end].high == sides[begin].high) ++end;
     if (end - begin != 2) continue;
     const Side &a = sides[begin], &b = sides[begin + 1];
@@ -277,7 +284,7 @@ std::array<Index, 3> faces_for_corners(const TriangleTree& tree, AtlasWalk& atla
 
 std::vector<TexCoord> transfer_texcoords(const Geometry& input, const Surface& surface, const TriangleTree& tree,
                                          const TriangleMesh& output, const RunContext& context) {
-  const Atlas atlas(input, surface);
+  const Atlas atlas(input, surface, context);
   std::vector<TexCoord> result(3 * output.triangles.size());
   parallel::for_chunks(context, output.triangles.size(), [&](std::size_t begin, std::size_t end) {
     AtlasWalk walk(atlas, surface.mesh);
@@ -297,9 +304,9 @@ std::vector<TexCoord> transfer_texcoords(const Geometry& input, const Surface& s
 
 }  // namespace
 
-FeatureEdges texture_seams(const Geometry& geometry, const Surface& surface) {
+FeatureEdges texture_seams(const Geometry& geometry, const Surface& surface, const RunContext& context) {
   if (geometry.corner_texcoords.empty()) return {};
-  return Atlas(geometry, surface).seams;
+  return Atlas(geometry, surface, context).seams;
 }
 
 void transfer_attributes(const Geometry& input, const Surface& surface, const SimplifiedMesh& simplified,
@@ -316,6 +323,7 @@ void transfer_attributes(const Geometry& input, const Surface& surface, const Si
   if (!input.triangle_attributes.empty()) {
     std::vector<Vec3> centers(mesh.triangles.size());
     for (std::size_t f = 0; f < centers.size(); ++f) {
+      poll(context, f);
       const auto [a, b, c] = corners_of(mesh, f);
       centers[f] = (a + b + c) / 3.0;
     }

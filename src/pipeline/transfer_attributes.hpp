@@ -8,7 +8,7 @@
 namespace shapelight::pipeline {
 
 /// Edges where the texture coordinates of two faces disagree at an end: they must stay lines.
-[[nodiscard]] FeatureEdges texture_seams(const Geometry& geometry, const Surface& surface);
+[[nodiscard]] FeatureEdges texture_seams(const Geometry& geometry, const Surface& surface, const RunContext& context);
 
 /// Gives `output` (whose triangles are those of `simplified`) the attributes of `input`.
 ///

@@ -125,9 +125,9 @@ double coarse_spacing(const RegistrationCloud& cloud) {
 DescribedPoints describe_points(const RegistrationCloud& cloud, std::span<const Index> keypoints, double spacing,
                                 const RunContext& context) {
   check(cloud, keypoints, spacing);
-  ThinnedScan scan = thin_scan(cloud, spacing);
+  ThinnedScan scan = thin_scan(cloud, spacing, context);
   const std::size_t n = scan.position.size();
-  const KdTree tree(scan.position);
+  const KdTree tree(scan.position, context);
   std::vector<std::vector<Neighbor>> near(n);
   std::vector<Histogram> bends(n);
   parallel::for_chunks(

@@ -16,6 +16,7 @@ namespace {
 // Median distance to the nearest other place; duplicates of a point do not count as its neighbours.
 double median_spacing(const RegistrationCloud& cloud, const RunContext& context) {
   const std::vector<Index> nearest = cloud.tree.all_nearest(1, context);
+  context.check();
   std::vector<double> distance;
   distance.reserve(nearest.size());
   for (std::size_t i = 0; i < nearest.size(); ++i) {
@@ -40,7 +41,7 @@ std::vector<Vec3> checked(std::vector<Vec3> positions) {
 }  // namespace
 
 RegistrationCloud::RegistrationCloud(std::vector<Vec3> positions, std::vector<Vec3> normals, const RunContext& context)
-    : position(checked(std::move(positions))), normal(std::move(normals)), tree(position) {
+    : position(checked(std::move(positions))), normal(std::move(normals)), tree(position, context) {
   if (!normal.empty() && normal.size() != position.size()) {
     throw InvalidInput(
         fmt::format("registration: {} normals for {} points, expected one each or none", normal.size(), size()));

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <utility>
 
+#include "core/poll.hpp"
 #include "shapelight/data/geometry.hpp"
 
 namespace shapelight {
@@ -36,18 +37,24 @@ class CellNumbers {
 
 }  // namespace
 
-ThinnedScan thin_scan(const RegistrationCloud& cloud, double cell) {
+ThinnedScan thin_scan(const RegistrationCloud& cloud, double cell, const RunContext& context) {
   const CellNumbers number(cloud.position, cell);
   std::vector<std::pair<std::uint64_t, Index>> order;
   order.reserve(cloud.size());
   for (Index i = 0; i < cloud.size(); ++i) {
+    poll(context, i);
     if (cloud.normal[i].squaredNorm() > 0.0) order.emplace_back(number.of(cloud.position[i]), i);
   }
-  std::sort(order.begin(), order.end());
+  std::size_t compared = 0;
+  std::sort(order.begin(), order.end(), [&](const auto& a, const auto& b) {
+    poll(context, compared++);
+    return a < b;
+  });
 
   ThinnedScan scan;
   scan.index_of_point.assign(cloud.size(), kNoIndex);
   for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {
+    poll(context, scan.position.size());
     Vec3 offset = Vec3::Zero();
     Vec3 normal = Vec3::Zero();
     const Vec3& first = cloud.position[order[begin].second];

@@ -16,7 +16,7 @@ struct ThinnedScan {
 };
 
 /// Pre: the cloud has normals; `cell` is a millionth of its diagonal or more. Cost: O(n log n).
-[[nodiscard]] ThinnedScan thin_scan(const RegistrationCloud& cloud, double cell);
+[[nodiscard]] ThinnedScan thin_scan(const RegistrationCloud& cloud, double cell, const RunContext& context);
 
 /// The number of cubic cells that hold points. Pre: as above.
 [[nodiscard]] std::size_t count_cells(std::span<const Vec3> points, double cell);

@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "core/parallel.hpp"
+#include "core/poll.hpp"
 #include "shapelight/core/error.hpp"
 #include "shapelight/spatial/kd_tree.hpp"
 
@@ -63,7 +64,7 @@ void estimate_discs(const Geometry& geometry, Surface& surface, bool need_normal
   }
   std::vector<Vec3> points(finite.size());
   std::transform(finite.begin(), finite.end(), points.begin(), [&](Index i) { return geometry.positions[i]; });
-  const KdTree tree(points);
+  const KdTree tree(points, context);
   if (need_normals) surface.normals.assign(geometry.size(), Vec3f::Zero());
   surface.radius.assign(geometry.size(), 0.0F);
   parallel::for_chunks(context, finite.size(), [&](std::size_t begin, std::size_t end) {
@@ -99,7 +100,7 @@ void estimate_discs(const Geometry& geometry, Surface& surface, bool need_normal
 
 }  // namespace
 
-std::vector<Triangle> triangulate_grid(const Geometry& geometry) {
+std::vector<Triangle> triangulate_grid(const Geometry& geometry, const RunContext& context) {
   const RangeGrid& grid = *geometry.grid;
   const auto point = [&](std::uint32_t column, std::uint32_t row) -> Index {
     const Index i = grid.pixel[static_cast<std::size_t>(row) * grid.width + column];
@@ -111,6 +112,7 @@ std::vector<Triangle> triangulate_grid(const Geometry& geometry) {
   const auto length = [&](Index i, Index j) { return (geometry.positions[i] - geometry.positions[j]).norm(); };
   std::vector<double> steps;
   for (std::uint32_t row = 0; row < grid.height; ++row) {
+    context.check();
     for (std::uint32_t column = 0; column + 1 < grid.width; ++column) {
       const Index i = point(column, row);
       const Index j = point(column + 1, row);
@@ -125,6 +127,7 @@ std::vector<Triangle> triangulate_grid(const Geometry& geometry) {
     if (longest <= limit * reach(a)) triangles.push_back({a, b, c});
   };
   for (std::uint32_t row = 0; row + 1 < grid.height; ++row) {
+    context.check();
     for (std::uint32_t column = 0; column + 1 < grid.width; ++column) {
       const Index a = point(column, row), b = point(column + 1, row);
       const Index c = point(column + 1, row + 1), d = point(column, row + 1);
@@ -142,9 +145,12 @@ std::vector<Triangle> triangulate_grid(const Geometry& geometry) {
   return triangles;
 }
 
-std::vector<Vec3f> triangle_normals(std::span<const Vec3> positions, std::span<const Triangle> triangles) {
+std::vector<Vec3f> triangle_normals(std::span<const Vec3> positions, std::span<const Triangle> triangles,
+                                    const RunContext& context) {
   std::vector<Vec3> sums(positions.size(), Vec3::Zero());
-  for (const Triangle& t : triangles) {
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    poll(context, i);
+    const Triangle& t = triangles[i];
     const std::array<Vec3, 3> side = {positions[t[1]] - positions[t[0]], positions[t[2]] - positions[t[1]],
                                       positions[t[0]] - positions[t[2]]};
     const Vec3 normal = side[0].cross(side[1]);
@@ -154,6 +160,7 @@ std::vector<Vec3f> triangle_normals(std::span<const Vec3> positions, std::span<c
       sums[t[k]] += normal * (std::atan2(twice_area, -side[k].dot(side[(k + 2) % 3])) / twice_area);
     }
   }
+  context.check();
   std::vector<Vec3f> normals(positions.size());
   std::transform(sums.begin(), sums.end(), normals.begin(), unit_or_zero);
   return normals;
@@ -164,7 +171,7 @@ Surface make_surface(const RenderItem& item, const RunContext& context) {
   Surface surface;
   surface.triangles = geometry.triangles;
   if (geometry.triangles.empty() && geometry.grid) {
-    surface.own_triangles = triangulate_grid(geometry);
+    surface.own_triangles = triangulate_grid(geometry, context);
     surface.triangles = surface.own_triangles;
   }
   surface.normals = given_normals(item);
@@ -178,7 +185,7 @@ Surface make_surface(const RenderItem& item, const RunContext& context) {
       throw InvalidInput(fmt::format("render: triangle {} names vertex {} of {}", t, largest, geometry.size()));
     }
   }
-  if (surface.normals.empty()) surface.normals = triangle_normals(geometry.positions, surface.triangles);
+  if (surface.normals.empty()) surface.normals = triangle_normals(geometry.positions, surface.triangles, context);
   return surface;
 }
 

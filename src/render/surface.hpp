@@ -20,10 +20,11 @@ Surface make_surface(const RenderItem& item, const RunContext& context);
 
 /// Triangles over the pixels of a range image, without those that span a depth jump: an edge longer than six times
 /// the median step between pixels, which grows with the distance from the sensor.
-std::vector<Triangle> triangulate_grid(const Geometry& geometry);
+std::vector<Triangle> triangulate_grid(const Geometry& geometry, const RunContext& context);
 
 /// Unit vertex normals, weighted by the angles of the triangles around, so that how a flat part is
 /// cut into triangles does not matter.
-std::vector<Vec3f> triangle_normals(std::span<const Vec3> positions, std::span<const Triangle> triangles);
+std::vector<Vec3f> triangle_normals(std::span<const Vec3> positions, std::span<const Triangle> triangles,
+                                    const RunContext& context);
 
 }  // namespace shapelight::drawing

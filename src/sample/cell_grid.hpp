@@ -49,7 +49,7 @@ class CellGrid {
   using Range = std::pair<std::uint32_t, std::uint32_t>;  // slots [first, second)
 
   /// Pre: cell >= Lattice::min_cell(bounding_box(points)).
-  CellGrid(std::span<const Vec3> points, double cell);
+  CellGrid(std::span<const Vec3> points, double cell, const RunContext& context);
 
   [[nodiscard]] double cell() const { return cell_; }
   [[nodiscard]] const Lattice& lattice() const { return lattice_; }
@@ -70,7 +70,7 @@ class CellGrid {
   }
 
  private:
-  void find_runs(std::span<const std::uint64_t> cell_keys);
+  void find_runs(std::span<const std::uint64_t> cell_keys, const RunContext& context);
 
   Lattice lattice_;
   double cell_;

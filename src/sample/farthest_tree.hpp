@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "shapelight/core/run_context.hpp"
 #include "shapelight/core/types.hpp"
 
 namespace shapelight {
@@ -16,7 +17,7 @@ namespace shapelight {
 class FarthestTree {
  public:
   /// weights: one per point, finite and >= 0; empty for 1. Cost: O(n log n).
-  FarthestTree(std::span<const Vec3> points, std::span<const double> weights);
+  FarthestTree(std::span<const Vec3> points, std::span<const double> weights, const RunContext& context);
 
   /// Chooses a point and shortens the distances of all others. Cost: about O(log n) on average over a whole ranking.
   void choose(Index point);
@@ -37,7 +38,7 @@ class FarthestTree {
     std::uint32_t begin, end;
     std::uint32_t right;  // 0 in a leaf; the left child follows its parent
   };
-  std::uint32_t build(std::uint32_t begin, std::uint32_t end, std::span<const Vec3> points);
+  std::uint32_t build(std::uint32_t begin, std::uint32_t end, std::span<const Vec3> points, const RunContext& context);
   bool update(std::uint32_t node, const std::array<double, 3>& chosen);
   bool update_leaf(Node& leaf, const std::array<double, 3>& chosen);
   [[nodiscard]] bool better(const Best& a, const Best& b) const {

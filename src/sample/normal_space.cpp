@@ -73,11 +73,12 @@ std::vector<Index> sample_normal_space(const SurfaceGraph& graph, std::span<cons
                      random_bits(options.seed, kNormalStream, vertex), vertex});
   }
   if (!any_normal) throw InvalidInput("sampling method normal: no point has a normal, expected at least one");
-  std::sort(draws.begin(), draws.end());
   context.check();
+  std::sort(draws.begin(), draws.end());
 
   std::uint64_t cell = draws.front().turn;
   std::uint64_t turn = 0;
+  context.check();
   for (Draw& draw : draws) {
     if (draw.turn != cell) {
       cell = draw.turn;
@@ -88,6 +89,7 @@ std::vector<Index> sample_normal_space(const SurfaceGraph& graph, std::span<cons
     draw.turn = wait + turn++;
     draw.key = random_bits(options.seed, kNormalTurnStream, draw.vertex);
   }
+  context.check();
   const auto end = draws.begin() + static_cast<std::ptrdiff_t>(target.count);
   if (end != draws.end()) std::nth_element(draws.begin(), end, draws.end());
   std::sort(draws.begin(), end);

@@ -8,6 +8,7 @@
 #include <map>
 #include <numeric>
 
+#include "core/poll.hpp"
 #include "sample/candidates.hpp"
 #include "shapelight/core/error.hpp"
 
@@ -51,9 +52,12 @@ std::vector<std::size_t> share_out(std::size_t total, std::span<const double> we
 }
 
 std::vector<Index> choose_local(std::span<const Index> candidates, std::span<const double> shape_index,
-                                std::span<const std::uint32_t> segment, std::size_t count) {
+                                std::span<const std::uint32_t> segment, std::size_t count, const RunContext& context) {
   std::map<std::uint32_t, std::vector<Index>> members;
-  for (const Index v : candidates) members[segment[v]].push_back(v);
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    poll(context, i);
+    members[segment[candidates[i]]].push_back(candidates[i]);
+  }
   std::vector<double> weight;
   std::vector<std::size_t> capacity;
   for (const auto& [label, vertices] : members) {
@@ -65,6 +69,7 @@ std::vector<Index> choose_local(std::span<const Index> candidates, std::span<con
   chosen.reserve(count);
   auto next_quota = quota.begin();
   for (auto& [label, vertices] : members) {
+    context.check();
     const auto end = vertices.begin() + static_cast<std::ptrdiff_t>(*next_quota++);
     std::partial_sort(vertices.begin(), end, vertices.end(), [&](Index a, Index b) {
       const double sa = std::abs(shape_index[a]);
@@ -103,12 +108,16 @@ double entropy(std::span<const Index> vertices, std::span<const double> shape_in
 class GlobalSampler {
  public:
   GlobalSampler(const SurfaceGraph& graph, std::span<const Index> open, std::span<const double> shape_index,
-                std::size_t count, double cell_size)
+                std::size_t count, double cell_size, const RunContext& context)
       : graph_(graph), cell_size_(cell_size) {
-    for (const Index v : open) voxels_[cell_of(v)].open.push_back(v);
+    for (std::size_t i = 0; i < open.size(); ++i) {
+      poll(context, i);
+      voxels_[cell_of(open[i])].open.push_back(open[i]);
+    }
     std::vector<double> weight;
     std::vector<std::size_t> capacity;
     for (auto& [cell, voxel] : voxels_) {
+      poll(context, weight.size());
       for (const Index v : voxel.open) voxel.centroid += graph.position[v];
       voxel.centroid /= static_cast<double>(voxel.open.size());
       weight.push_back(1.0 + entropy(voxel.open, shape_index));
@@ -120,10 +129,7 @@ class GlobalSampler {
   }
 
   std::vector<Index> run(double min_distance, const RunContext& context) {
-    for (int round = 0; fill(round < kMaxRelaxations ? min_distance : 0.0); ++round) {
-      context.check();
-      min_distance *= kRelax;
-    }
+    for (int round = 0; fill(round < kMaxRelaxations ? min_distance : 0.0, context); ++round) min_distance *= kRelax;
     return picks_;
   }
 
@@ -138,11 +144,11 @@ class GlobalSampler {
   }
 
   // One pass over the voxels; true while a quota is not filled.
-  bool fill(double min_distance) {
+  bool fill(double min_distance, const RunContext& context) {
     bool unfilled = false;
     for (auto& [cell, voxel] : voxels_) {
       while (voxel.chosen.size() < voxel.quota) {
-        const auto best = find_best(cell, voxel, min_distance);
+        const auto best = find_best(cell, voxel, min_distance, context);
         if (best == voxel.open.end()) break;
         picks_.push_back(*best);
         voxel.chosen.push_back(*best);
@@ -154,10 +160,12 @@ class GlobalSampler {
   }
 
   // Nearest to the centroid while the voxel has none, then farthest from its own.
-  std::vector<Index>::iterator find_best(const Cell& cell, Voxel& voxel, double min_distance) {
+  std::vector<Index>::iterator find_best(const Cell& cell, Voxel& voxel, double min_distance,
+                                         const RunContext& context) {
     auto best = voxel.open.end();
     double best_score = -std::numeric_limits<double>::infinity();
     for (auto v = voxel.open.begin(); v != voxel.open.end(); ++v) {
+      poll(context, num_tried_++);
       double score = 0.0;
       if (voxel.chosen.empty()) {
         score = -(graph_.position[*v] - voxel.centroid).squaredNorm();
@@ -194,6 +202,7 @@ class GlobalSampler {
   double cell_size_;
   std::map<Cell, Voxel> voxels_;
   std::vector<Index> picks_;
+  std::size_t num_tried_ = 0;
 };
 
 // Area that the candidates stand for; a cloud without area (all points on one line) gets its box's.
@@ -220,7 +229,7 @@ std::vector<Index> sample_paper(const SurfaceGraph& graph, std::span<const Index
   }
   const auto num_local =
       static_cast<std::size_t>(std::llround(options.local_weight * static_cast<double>(target.count)));
-  std::vector<Index> picks = choose_local(candidates, shape_index, segment, num_local);
+  std::vector<Index> picks = choose_local(candidates, shape_index, segment, num_local, context);
   const std::size_t num_global = target.count - num_local;
   if (num_global == 0) return picks;
 
@@ -231,7 +240,7 @@ std::vector<Index> sample_paper(const SurfaceGraph& graph, std::span<const Index
   const double share = area_of(graph, candidates) / static_cast<double>(num_global);
   const double cell_size = options.voxel_size > 0.0 ? options.voxel_size : std::sqrt(1.5 * share);
   const std::vector<Index> global =
-      GlobalSampler(graph, open, shape_index, num_global, cell_size).run(0.5 * std::sqrt(share), context);
+      GlobalSampler(graph, open, shape_index, num_global, cell_size, context).run(0.5 * std::sqrt(share), context);
   picks.insert(picks.end(), global.begin(), global.end());
   return picks;
 }

@@ -26,15 +26,15 @@ class DartBoard {
   /// Indices of the points taken; stops after `limit`.
   std::vector<Index> throw_at(double radius, std::size_t limit, const RunContext& context) {
     // A cell much larger than the radius holds too many points, a smaller one cannot vouch for it.
-    if (!grid_ || radius > grid_->cell() || radius < 0.4 * grid_->cell()) build_grid(1.1 * radius);
+    if (!grid_ || radius > grid_->cell() || radius < 0.4 * grid_->cell()) build_grid(1.1 * radius, context);
     std::vector<Index> taken = throw_darts(*grid_, order_, radius, limit, context);
     for (Index& slot : taken) slot = grid_->index(slot);
     return taken;
   }
 
  private:
-  void build_grid(double cell) {
-    grid_.emplace(points_, std::max(cell, Lattice::min_cell(bounding_box(points_))));
+  void build_grid(double cell, const RunContext& context) {
+    grid_.emplace(points_, std::max(cell, Lattice::min_cell(bounding_box(points_))), context);
     const std::vector<std::uint32_t> slot_of_index = grid_->slot_of_index();
     order_.resize(points_.size());
     std::transform(order_of_index_.begin(), order_of_index_.end(), order_.begin(),

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/parallel.hpp"
+#include "core/poll.hpp"
 #include "sample/candidates.hpp"
 #include "sample/farthest_tree.hpp"
 #include "shapelight/core/error.hpp"
@@ -81,13 +82,15 @@ std::vector<double> variation_term(const ShapeFields& fields) {
   return values;
 }
 
-// The first pick: the largest w d^2, d being the distance to the centroid. The largest w alone would not do: many points
-// have the capped one, and the order of the vertices, which changes with a rotation, would choose among them.
+// The first pick: the largest w d^2, d being the distance to the centroid. The largest w alone would not do: many
+// points have the capped one, and the order of the vertices, which changes with a rotation, would choose among them.
 Index first_pick(std::span<const Vec3> points, std::span<const double> weights) {
   Vec3 centroid = Vec3::Zero();
   for (const Vec3& p : points) centroid += p;
   centroid /= static_cast<double>(points.size());
-  const auto score = [&](Index i) { return (weights.empty() ? 1.0 : weights[i]) * (points[i] - centroid).squaredNorm(); };
+  const auto score = [&](Index i) {
+    return (weights.empty() ? 1.0 : weights[i]) * (points[i] - centroid).squaredNorm();
+  };
   Index best = 0;
   for (Index i = 1; i < points.size(); ++i) {
     if (score(i) > score(best)) best = i;
@@ -101,15 +104,15 @@ std::vector<Index> rank(std::span<const Vec3> points, std::span<const double> we
   const std::size_t limit = target.count > 0 ? target.count : points.size();
   const double stop_sq = target.spacing * target.spacing;
   const Index first = first_pick(points, local_share > 0.0 ? weights : std::span<const double>{});
-  FarthestTree tree(points, weights);
+  FarthestTree tree(points, weights, context);
   std::vector<Index> picks;
   picks.reserve(target.count);
   std::size_t num_local = 0;
   while (picks.size() < limit) {
     if (picks.size() % kPicksPerPoll == 0) {
       context.report(static_cast<double>(picks.size()) / static_cast<double>(limit));
-      context.check();
     }
+    poll(context, picks.size());
     const bool local = static_cast<double>(num_local) < local_share * static_cast<double>(picks.size() + 1);
     num_local += local;
     // A local pick of no weight left would repeat a chosen point.

@@ -6,14 +6,13 @@
 #include <optional>
 
 #include "core/parallel.hpp"
+#include "core/poll.hpp"
 #include "core/random.hpp"
 #include "sample/candidates.hpp"
 #include "shapelight/spatial/kd_tree.hpp"
 
 namespace shapelight {
 namespace {
-
-constexpr std::size_t kPollInterval = 4096;  // steps between two looks at the stop token
 
 /// Distances to the chosen points and the farthest point among the rest.
 class FarthestQueue {
@@ -46,11 +45,11 @@ class FarthestQueue {
 FarthestQueue::FarthestQueue(std::span<const Vec3> points, double cell, std::span<const Index> chosen,
                              const RunContext& context)
     : points_(points),
-      grid_(points, cell),
+      grid_(points, cell, context),
       slot_of_index_(grid_.slot_of_index()),
       distance_sq_(points.size(), std::numeric_limits<double>::infinity()) {
   for (std::size_t k = 0; k < chosen.size(); ++k) {
-    if (k % kPollInterval == 0) context.check();
+    poll(context, k);
     const std::uint32_t slot = slot_of_index_[chosen[k]];
     grid_.for_each_near(slot, [&](std::uint32_t other) {
       distance_sq_[other] = std::min(distance_sq_[other], (grid_.point(other) - grid_.point(slot)).squaredNorm());
@@ -60,6 +59,7 @@ FarthestQueue::FarthestQueue(std::span<const Vec3> points, double cell, std::spa
   for (const Index i : chosen) distance_sq_[slot_of_index_[i]] = -1.0;
   heap_.reserve(points.size());
   for (std::uint32_t slot = 0; slot < points.size(); ++slot) {
+    poll(context, slot);
     if (distance_sq_[slot] < 0.0) continue;
     const auto tie = static_cast<std::uint32_t>(random_bits(0, kFillStream, grid_.index(slot)));
     heap_.push_back({distance_sq_[slot], tie, slot});
@@ -77,7 +77,7 @@ void FarthestQueue::measure_far_points(std::span<const Index> chosen, const RunC
   if (far.empty()) return;
   std::vector<Vec3> positions;
   for (const Index i : chosen) positions.push_back(points_[i]);
-  const KdTree tree(positions);
+  const KdTree tree(positions, context);
   parallel::for_chunks(context, far.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) distance_sq_[far[k]] = tree.nearest(grid_.point(far[k])).distance_sq;
   });
@@ -129,7 +129,7 @@ std::vector<std::uint32_t> throw_darts(const CellGrid& grid, std::span<const std
   for (const std::uint32_t slot : order) {
     if (covered[slot]) continue;
     if (taken.size() == limit) break;
-    if (taken.size() % kPollInterval == 0) context.check();
+    poll(context, taken.size());
     taken.push_back(slot);
     covered[slot] = 1;
     const Vec3 center = grid.point(slot);
@@ -145,7 +145,7 @@ void fill_farthest(std::span<const Vec3> points, std::size_t count, double reach
   if (chosen.size() >= count) return;
   FarthestQueue queue(points, std::max(reach, Lattice::min_cell(bounding_box(points))), chosen, context);
   while (chosen.size() < count) {
-    if (chosen.size() % kPollInterval == 0) context.check();
+    poll(context, chosen.size());
     chosen.push_back(queue.take());
   }
 }

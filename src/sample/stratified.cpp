@@ -52,7 +52,7 @@ std::vector<Index> suppress_close(const Strata& strata, std::span<const Vec3> po
                                   const RunContext& context) {
   std::vector<Vec3> drawn;
   for (const Index i : strata.point) drawn.push_back(points[i]);
-  const CellGrid grid(drawn, std::max(distance, Lattice::min_cell(bounding_box(drawn))));
+  const CellGrid grid(drawn, std::max(distance, Lattice::min_cell(bounding_box(drawn))), context);
   std::vector<std::uint32_t> order(drawn.size());
   std::iota(order.begin(), order.end(), 0U);
   std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
@@ -77,7 +77,7 @@ std::vector<Index> sample_stratified(const SurfaceGraph& graph, std::span<const 
 
   const double cell = target.count > 0 ? find_cell_size(points, target.count, context) : target.spacing;
   check_cell_size(points, cell, "stratified");
-  const Strata strata = draw_from_strata(CellGrid(points, cell), candidates, options.seed, context);
+  const Strata strata = draw_from_strata(CellGrid(points, cell, context), candidates, options.seed, context);
   std::vector<Index> chosen = suppress_close(strata, points, options.suppression * cell, context);
   context.report(0.5, "stratified sampling");
   fill_farthest(points, target.count, std::sqrt(3.0) * cell, chosen, context);

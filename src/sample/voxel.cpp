@@ -54,7 +54,7 @@ std::vector<Index> sample_voxel(const SurfaceGraph& graph, std::span<const Index
     cell = find_cell_size(points, std::max<std::size_t>(1, static_cast<std::size_t>(share)), context);
   }
   check_cell_size(points, cell, "voxel");
-  std::vector<Index> chosen = nearest_to_centroids(CellGrid(points, cell), context);
+  std::vector<Index> chosen = nearest_to_centroids(CellGrid(points, cell, context), context);
   context.report(0.5, "voxel sampling");
   fill_farthest(points, target.count, std::sqrt(3.0) * cell, chosen, context);
   to_vertices(candidates, chosen);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/poll.hpp"
 #include "graph/field_checks.hpp"
 
 namespace shapelight {
@@ -18,30 +19,34 @@ struct WeightedEdge {
 
 // Stable radix sort: edges come in the order (a, b), so they leave in the order (weight, a, b). Non-negative floats
 // sort like their bits.
-void sort_by_weight(std::vector<WeightedEdge>& edges) {
+void sort_by_weight(std::vector<WeightedEdge>& edges, const RunContext& context) {
   constexpr std::uint32_t kBits = 11, kMask = (1U << kBits) - 1;
   std::vector<WeightedEdge> other(edges.size());
   for (std::uint32_t shift = 0; shift < 32; shift += kBits) {
+    context.check();
     const auto digit = [shift](const WeightedEdge& e) {
       return (std::bit_cast<std::uint32_t>(e.weight) >> shift) & kMask;
     };
     std::array<std::size_t, kMask + 2> start{};
     for (const WeightedEdge& e : edges) ++start[digit(e) + 1];
     std::partial_sum(start.begin(), start.end(), start.begin());
+    context.check();
     for (const WeightedEdge& e : edges) other[start[digit(e)]++] = e;
     edges.swap(other);
   }
 }
 
-std::vector<WeightedEdge> sorted_edges(const SurfaceGraph& graph, std::span<const double> field) {
+std::vector<WeightedEdge> sorted_edges(const SurfaceGraph& graph, std::span<const double> field,
+                                       const RunContext& context) {
   std::vector<WeightedEdge> edges;
   edges.reserve(graph.neighbors.size() / 2);
   for (std::size_t i = 0; i < graph.size(); ++i) {
+    poll(context, i);
     for (const Index j : graph.neighbors_of(i)) {
       if (i < j) edges.push_back({static_cast<float>(std::abs(field[i] - field[j])), static_cast<Index>(i), j});
     }
   }
-  sort_by_weight(edges);
+  sort_by_weight(edges, context);
   return edges;
 }
 
@@ -93,20 +98,22 @@ SegmentationResult segment_field(const SurfaceGraph& graph, std::span<const doub
   validate_options(options);
   check_field(graph, field, "field");
   const std::size_t n = graph.size();
-  const std::vector<WeightedEdge> edges = sorted_edges(graph, field);
-  context.check();
+  const std::vector<WeightedEdge> edges = sorted_edges(graph, field, context);
 
   Segments segments(n);
-  for (const WeightedEdge& e : edges) {
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    poll(context, i);
+    const WeightedEdge& e = edges[i];
     const Index a = segments.find(e.a), b = segments.find(e.b);
     if (a == b) continue;
     const double least = std::min(segments.tolerance(a, options.scale), segments.tolerance(b, options.scale));
     if (static_cast<double>(e.weight) <= least) segments.join(a, b, e.weight);  // no boundary, eq. 9
   }
-  context.check();
 
   const double smallest = std::max(static_cast<double>(options.min_points), options.min_share * static_cast<double>(n));
-  for (const WeightedEdge& e : edges) {
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    poll(context, i);
+    const WeightedEdge& e = edges[i];
     const Index a = segments.find(e.a), b = segments.find(e.b);
     if (a != b && static_cast<double>(std::min(segments.size(a), segments.size(b))) < smallest)
       segments.join(a, b, e.weight);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "core/poll.hpp"
 #include "shapelight/core/error.hpp"
 #include "simplify/edge_uses.hpp"
 #include "simplify/manifold_mesh.hpp"
@@ -49,13 +50,15 @@ void check_count(const SimplifiedMesh& result, const SimplifyTarget& target) {
   }
 }
 
-void check_vertices(const SimplifiedMesh& reference, const SimplifiedMesh& result, Placement placement) {
+void check_vertices(const SimplifiedMesh& reference, const SimplifiedMesh& result, Placement placement,
+                    const RunContext& context) {
   const std::size_t n = result.mesh.positions.size();
   if (result.source_vertex.size() != n) {
     throw PostconditionFailed(fmt::format("{} sources for {} vertices", result.source_vertex.size(), n));
   }
   std::vector<std::uint8_t> used(n, 0);
   for (std::size_t f = 0; f < result.mesh.triangles.size(); ++f) {
+    poll(context, f);
     const Triangle& t = result.mesh.triangles[f];
     if (std::max({t[0], t[1], t[2]}) >= n) throw PostconditionFailed(fmt::format("face {}: vertex >= {}", f, n));
     if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) {
@@ -68,6 +71,7 @@ void check_vertices(const SimplifiedMesh& reference, const SimplifiedMesh& resul
   std::vector<Index> vertex_of(std::size_t{highest} + 1, kNoIndex);
   for (Index v = 0; v < reference.source_vertex.size(); ++v) vertex_of[reference.source_vertex[v]] = v;
   for (std::size_t v = 0; v < n; ++v) {
+    poll(context, v);
     const Index source = result.source_vertex[v];
     if (used[v] == 0) throw PostconditionFailed(fmt::format("vertex {} is in no face", v));
     if (!result.mesh.positions[v].allFinite()) throw PostconditionFailed(fmt::format("vertex {} is not finite", v));
@@ -80,7 +84,7 @@ void check_vertices(const SimplifiedMesh& reference, const SimplifiedMesh& resul
   }
 }
 
-void check_duplicate_faces(const TriangleMesh& mesh) {
+void check_duplicate_faces(const TriangleMesh& mesh, const RunContext& context) {
   // Equal faces share their lowest vertex; few faces have the same one.
   std::vector<std::size_t> offsets(mesh.positions.size() + 1, 0);
   for (const Triangle& t : mesh.triangles) ++offsets[std::min({t[0], t[1], t[2]}) + 1];
@@ -92,6 +96,7 @@ void check_duplicate_faces(const TriangleMesh& mesh) {
     sorted[next[t[0]]++] = t;
   }
   for (std::size_t v = 0; v + 1 < offsets.size(); ++v) {
+    poll(context, v);
     const auto begin = sorted.begin() + static_cast<std::ptrdiff_t>(offsets[v]);
     const auto end = sorted.begin() + static_cast<std::ptrdiff_t>(offsets[v + 1]);
     std::sort(begin, end);
@@ -115,7 +120,7 @@ std::vector<std::array<Index, 2>> crowded_edges(const SimplifiedMesh& mesh, cons
 }
 
 void check_edges(const SimplifiedMesh& reference, const SimplifiedMesh& result, const EdgeUses& edges_in,
-                 const EdgeUses& edges_out) {
+                 const EdgeUses& edges_out, const RunContext& context) {
   // The ends of such an edge may have moved, so only their number tells.
   const auto before = crowded_edges(reference, edges_in), after = crowded_edges(result, edges_out);
   if (after.size() > before.size()) {
@@ -128,6 +133,7 @@ void check_edges(const SimplifiedMesh& reference, const SimplifiedMesh& result, 
                     "from input vertex {} to {}",
                     after.size(), before.size(), a, b));
   }
+  context.check();
   const Topology in = topology_of(reference.mesh, edges_in), out = topology_of(result.mesh, edges_out);
   if (out.euler != in.euler) {
     throw PostconditionFailed(fmt::format("Euler characteristic {}, expected the input's {}", out.euler, in.euler));
@@ -146,12 +152,11 @@ SimplifiedMesh without_oddities(const TriangleMesh& mesh, MeshOddities& oddities
 void check_result(const SimplifiedMesh& reference, const SimplifiedMesh& result, const SimplifyTarget& target,
                   Placement placement, const RunContext& context) {
   check_count(result, target);
-  check_vertices(reference, result, placement);
+  check_vertices(reference, result, placement, context);
+  check_duplicate_faces(result.mesh, context);
+  const EdgeUses edges_in(reference.mesh, context), edges_out(result.mesh, context);
   context.check();
-  check_duplicate_faces(result.mesh);
-  const EdgeUses edges_in(reference.mesh), edges_out(result.mesh);
-  context.check();
-  check_edges(reference, result, edges_in, edges_out);
+  check_edges(reference, result, edges_in, edges_out, context);
   const std::vector<Index> turned = turned_faces(reference.mesh, result.mesh, edges_out, context);
   if (!turned.empty() && turned.size() > turned_faces(reference.mesh, reference.mesh, edges_in, context).size()) {
     throw PostconditionFailed(

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/parallel.hpp"
+#include "core/poll.hpp"
 #include "shapelight/core/error.hpp"
 #include "simplify/bucket_queue.hpp"
 #include "simplify/collapse_rule.hpp"
@@ -57,6 +58,7 @@ class CollapseLoop {
       }
     });
     for (Index v = 0; v < mesh_.size(); ++v) {
+      shapelight::poll(context_, v);
       if (!mesh_.vertex(v).is_dead()) push(v);
     }
   }

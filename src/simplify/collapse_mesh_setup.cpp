@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "core/parallel.hpp"
+#include "core/poll.hpp"
 #include "simplify/collapse_mesh.hpp"
 #include "simplify/morton_order.hpp"
 #include "simplify/wedges.hpp"
@@ -25,13 +26,15 @@ CollapseMesh<Scalar>::CollapseMesh(const ManifoldMesh& mesh, double boundary_wei
       for (std::size_t c = 0; c < 3; ++c) renumbered[f][c] = rank[triangles[f][c]];
     }
   });
-  Wedges wedges = collect_wedges(n, renumbered);
+  Wedges wedges = collect_wedges(n, renumbered, context);
 
+  context.check();
   vertices_.resize(n);
   lines_.assign(n, {kNoIndex, kNoIndex});
   constexpr Index kLeastCapacity = 8;  // most rings grow by two in their first merger
   Index used = 0;
   for (std::size_t v = 0; v < n; ++v) {
+    poll(context, v);
     vertices_[v].ring = used;
     vertices_[v].capacity = std::max(padded(wedges.at(v).size() + 1), kLeastCapacity);
     used += vertices_[v].capacity;
@@ -39,6 +42,7 @@ CollapseMesh<Scalar>::CollapseMesh(const ManifoldMesh& mesh, double boundary_wei
   for (const Index v : order_) {
     if (!mesh.junction.empty()) junction_.push_back(mesh.junction[v]);
   }
+  context.check();
   arena_.reserve(used + used / 4);
   arena_.resize(used, kNoIndex);
   parallel::for_chunks(context, n, [&](std::size_t begin, std::size_t end) {
@@ -142,6 +146,7 @@ ManifoldMesh CollapseMesh<Scalar>::finish(ManifoldMesh&& input, const RunContext
   });
   result.mesh.triangles.reserve(num_faces_);
   for (Index v = 0; v < n; ++v) {
+    poll(context, v);
     if (vertices_[v].is_dead()) continue;
     const auto around = ring(v);
     for (std::size_t i = vertices_[v].is(kOpen) ? 1 : 0; i < around.size(); ++i) {

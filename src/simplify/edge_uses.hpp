@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/poll.hpp"
 #include "shapelight/data/triangle_mesh.hpp"
 
 namespace shapelight {
@@ -22,9 +23,11 @@ struct EdgeUses {
   std::vector<std::size_t> offsets;
   std::vector<EdgeUse> uses;
 
-  explicit EdgeUses(const TriangleMesh& mesh) : offsets(mesh.positions.size() + 1, 0), uses(3 * mesh.triangles.size()) {
+  EdgeUses(const TriangleMesh& mesh, const RunContext& context)
+      : offsets(mesh.positions.size() + 1, 0), uses(3 * mesh.triangles.size()) {
     const auto for_edges = [&](auto&& visit) {
       for (Index f = 0; f < mesh.triangles.size(); ++f) {
+        poll(context, f);
         for (std::size_t c = 0; c < 3; ++c) {
           const auto [low, high] = std::minmax(mesh.triangles[f][c], mesh.triangles[f][(c + 1) % 3]);
           visit(low, EdgeUse{high, f});
@@ -35,7 +38,10 @@ struct EdgeUses {
     std::partial_sum(offsets.begin(), offsets.end(), offsets.begin());
     std::vector<std::size_t> next(offsets.begin(), offsets.end() - 1);
     for_edges([&](Index low, const EdgeUse& use) { uses[next[low]++] = use; });
-    for (std::size_t v = 0; v + 1 < offsets.size(); ++v) std::sort(begin_of(v), begin_of(v + 1));
+    for (std::size_t v = 0; v + 1 < offsets.size(); ++v) {
+      poll(context, v);
+      std::sort(begin_of(v), begin_of(v + 1));
+    }
   }
 
   /// visit(low, high, uses), once per edge

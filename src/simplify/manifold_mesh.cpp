@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "core/parallel.hpp"
+#include "core/poll.hpp"
 #include "shapelight/core/error.hpp"
 #include "simplify/sheets.hpp"
 #include "simplify/wedges.hpp"
@@ -35,6 +36,7 @@ std::vector<Triangle> usable_triangles(const TriangleMesh& mesh, const RunContex
         return degenerate;
       },
       std::plus<>());
+  context.check();
   std::vector<Triangle> usable(triangles);
   std::erase_if(usable, is_degenerate);
   return usable;
@@ -62,6 +64,7 @@ Sheets pass_through(const Wedges& wedges, std::vector<Triangle>&& triangles, con
   sheets.triangles = std::move(triangles);
   std::vector<Index> number(wedges.num_vertices(), kNoIndex);
   for (Index v = 0; v < number.size(); ++v) {
+    poll(context, v);
     if (wedges.at(v).empty()) continue;
     number[v] = static_cast<Index>(sheets.source.size());
     sheets.source.push_back(v);
@@ -143,16 +146,16 @@ ManifoldMesh make_manifold(const TriangleMesh& mesh, const FeatureEdges& feature
                            MeshOddities* oddities) {
   MeshOddities met;
   std::vector<Triangle> triangles = usable_triangles(mesh, context, met);
-  Wedges wedges = collect_wedges(mesh.positions.size(), triangles);
+  Wedges wedges = collect_wedges(mesh.positions.size(), triangles, context);
   std::vector<Fan> fans(mesh.positions.size());
   for (std::size_t v = 0; v < fans.size(); ++v) met.unused_vertices += wedges.at(v).empty();
   const bool is_manifold = order_fans(wedges, fans, context);
   Sheets sheets = is_manifold ? pass_through(wedges, std::move(triangles), context)
-                              : cut_into_sheets(mesh.positions, std::move(triangles), met);
+                              : cut_into_sheets(mesh.positions, std::move(triangles), met, context);
   met.split_vertices = sheets.source.size() - (mesh.positions.size() - met.unused_vertices);
   met.locked_vertices = static_cast<std::size_t>(std::count(sheets.locked.begin(), sheets.locked.end(), 1));
   if (!is_manifold || met.unused_vertices != 0) {
-    wedges = collect_wedges(sheets.source.size(), sheets.triangles);
+    wedges = collect_wedges(sheets.source.size(), sheets.triangles, context);
     fans.resize(sheets.source.size());
     order_fans(wedges, fans, context);
   }

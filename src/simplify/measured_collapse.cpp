@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/parallel.hpp"
+#include "core/poll.hpp"
 #include "simplify/star_shape.hpp"
 
 namespace shapelight::simplification {
@@ -170,7 +171,9 @@ class Collapser {
     count = std::min(count, order.size());
     const auto middle = order.begin() + static_cast<std::ptrdiff_t>(count);
     const auto less = [&](Index a, Index b) { return before(a, b); };
+    context_.check();
     std::nth_element(order.begin(), count < order.size() ? middle : order.begin(), order.end(), less);
+    context_.check();
     order.resize(count);
     std::sort(order.begin(), order.end(), less);
     return order;
@@ -204,7 +207,9 @@ class Collapser {
     std::vector<Index> order = cheapest(count);
     while (guard(order)) order = cheapest(count);
     std::vector<Index> chosen, ring;
-    for (const Index u : order) {
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      poll(context_, i);
+      const Index u = order[i];
       if (blocked_[u]) continue;
       measured_.mesh.neighbors(u, ring);
       for (const Index w : ring) blocked_[w] = 1;
@@ -238,7 +243,10 @@ class Collapser {
   std::size_t commit(std::span<const Index> chosen) {
     std::vector<Index> touched, targets;
     std::size_t removed = 0;
-    for (Prepared& p : prepare(chosen)) {
+    const std::vector<Prepared> prepared = prepare(chosen);
+    for (std::size_t i = 0; i < prepared.size(); ++i) {
+      poll(context_, i);
+      const Prepared& p = prepared[i];
       const Index v = removal_[p.u].into;
       touched.insert(touched.end(), p.ring.begin(), p.ring.end());
       removal_[p.u] = {};
@@ -259,6 +267,7 @@ class Collapser {
         touched.insert(touched.end(), ring.begin(), ring.end());
       }
     }
+    context_.check();
     sort_unique(touched);
     dirty_ = std::move(touched);
     return removed;

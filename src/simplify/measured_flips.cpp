@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/parallel.hpp"
+#include "core/poll.hpp"
 #include "simplify/star_shape.hpp"
 
 namespace shapelight::simplification {
@@ -114,7 +115,9 @@ std::size_t flip_edges(MeasuredMesh& measured, const RunContext& context) {
   std::vector<std::uint8_t> taken(measured.mesh.num_faces(), 0);
   std::size_t done = 0;
   Scratch scratch;
-  for (const Flip& flip : flips) {
+  for (std::size_t i = 0; i < flips.size(); ++i) {
+    poll(context, i);
+    const Flip& flip = flips[i];
     if (taken[flip.f] || taken[flip.g]) {  // to be looked at again
       measured.changed[flip.f] = measured.changed[flip.g] = 1;
       continue;

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/parallel.hpp"
+#include "core/poll.hpp"
 #include "shapelight/spatial/triangle_tree.hpp"
 
 namespace shapelight::simplification {
@@ -13,12 +14,16 @@ constexpr double kLineShare = 0.15;    // weight of a line sample per length, in
 constexpr double kCreaseLength = 2.4;  // of the sum of three unit normals: less, and they stand across a crease
 constexpr double kMinAgreement = 0.5;  // cosine
 
-std::vector<Vec3> vertex_normals(std::span<const Vec3> position, std::span<const Triangle> triangles) {
+std::vector<Vec3> vertex_normals(std::span<const Vec3> position, std::span<const Triangle> triangles,
+                                 const RunContext& context) {
   std::vector<Vec3> normal(position.size(), Vec3::Zero());
-  for (const Triangle& t : triangles) {
+  for (std::size_t f = 0; f < triangles.size(); ++f) {
+    poll(context, f);
+    const Triangle& t = triangles[f];
     const Vec3 cross = (position[t[1]] - position[t[0]]).cross(position[t[2]] - position[t[0]]);
     for (const Index v : t) normal[v] += cross;
   }
+  context.check();
   for (Vec3& n : normal) n.normalize();
   return normal;
 }
@@ -41,14 +46,15 @@ struct SampledSurface {
   std::vector<Index> face;  // per sample: a face of the input that it lies on
 };
 
-SampledSurface sample_surface(std::span<const Vec3> position, std::span<const Triangle> triangles,
-                              double normal_weight) {
+SampledSurface sample_surface(std::span<const Vec3> position, std::span<const Triangle> triangles, double normal_weight,
+                              const RunContext& context) {
   SampledSurface out;
   out.samples.reserve(triangles.size() + position.size());
   out.face.reserve(triangles.size() + position.size());
   std::vector<double> vertex_area(position.size(), 0.0);
   std::vector<Index> vertex_face(position.size(), kNoIndex);
   for (Index f = 0; f < triangles.size(); ++f) {
+    poll(context, f);
     const Triangle& t = triangles[f];
     const Vec3 cross = (position[t[1]] - position[t[0]]).cross(position[t[2]] - position[t[0]]);
     const double double_area = cross.norm();
@@ -66,6 +72,7 @@ SampledSurface sample_surface(std::span<const Vec3> position, std::span<const Tr
     }
   }
   for (Index v = 0; v < position.size(); ++v) {
+    poll(context, v);
     out.samples.push_back(sample_at(position[v], kVertexShare * vertex_area[v]));
     out.samples.back().vertex = v;
     out.face.push_back(vertex_face[v]);
@@ -78,6 +85,7 @@ std::vector<Index> closest_faces(const LiveMesh& mesh, std::span<const SurfaceSa
                                  const RunContext& context) {
   TriangleMesh live{mesh.position, {}};
   live.triangles.reserve(mesh.num_faces());
+  context.check();
   for (Index f = 0; f < mesh.num_faces(); ++f) live.triangles.push_back(mesh.face(f));
   const TriangleTree tree(live, context);
   std::vector<Index> face(samples.size());
@@ -89,13 +97,15 @@ std::vector<Index> closest_faces(const LiveMesh& mesh, std::span<const SurfaceSa
 }
 
 // Orders samples by face, so that those of one face lie side by side in memory.
-void sort_by_face(std::vector<SurfaceSample>& samples, std::vector<Index>& face, std::size_t num_faces) {
+void sort_by_face(std::vector<SurfaceSample>& samples, std::vector<Index>& face, std::size_t num_faces,
+                  const RunContext& context) {
   std::vector<std::size_t> begin(num_faces + 1, 0);
   for (const Index f : face) ++begin[f + 1];
   for (std::size_t f = 0; f < num_faces; ++f) begin[f + 1] += begin[f];
   std::vector<SurfaceSample> sorted(samples.size());
   std::vector<Index> sorted_face(samples.size());
   for (std::size_t i = 0; i < samples.size(); ++i) {
+    poll(context, i);
     const std::size_t to = begin[face[i]]++;
     sorted[to] = samples[i];
     sorted_face[to] = face[i];
@@ -121,12 +131,13 @@ double segment_distance_sq(const Vec3& p, const Vec3& a, const Vec3& b) {
 MeasuredMesh::MeasuredMesh(const ManifoldMesh& input, std::span<const Vec3> target, ManifoldMesh&& coarse,
                            const SampleScheme& scheme, const RunContext& context)
     : mesh(std::move(coarse)), changed(mesh.num_faces(), 1), first_sample_(mesh.num_faces(), kNoIndex) {
-  SampledSurface surface = sample_surface(target, input.mesh.triangles, scheme.normal_weight);
+  SampledSurface surface = sample_surface(target, input.mesh.triangles, scheme.normal_weight, context);
   samples_ = std::move(surface.samples);
   const bool is_whole = mesh.num_vertices() == input.mesh.positions.size();
   std::vector<Index> face = is_whole ? std::move(surface.face) : closest_faces(mesh, samples_, context);
-  sort_by_face(samples_, face, mesh.num_faces());
+  sort_by_face(samples_, face, mesh.num_faces(), context);
   for (std::size_t s = samples_.size(); s-- > 0;) {
+    poll(context, s);
     samples_[s].next = std::exchange(first_sample_[face[s]], static_cast<Index>(s));
   }
   parallel::for_chunks(context, mesh.num_faces(), [&](std::size_t begin, std::size_t end) {
@@ -141,8 +152,9 @@ MeasuredMesh::MeasuredMesh(const ManifoldMesh& input, std::span<const Vec3> targ
       for (std::size_t i = 0; i < ids.size(); ++i) samples_[ids[i]].error = block.best[i] < 0 ? 0.0F : block.error[i];
     }
   });
+  context.check();
   sample_lines(input, target, scheme);
-  input_normal_ = vertex_normals(target, input.mesh.triangles);
+  input_normal_ = vertex_normals(target, input.mesh.triangles, context);
 }
 
 void MeasuredMesh::sample_lines(const ManifoldMesh& input, std::span<const Vec3> target, const SampleScheme& scheme) {

@@ -4,6 +4,8 @@
 #include <numeric>
 #include <tuple>
 
+#include "core/poll.hpp"
+
 namespace shapelight::simplification {
 namespace {
 
@@ -22,13 +24,19 @@ struct Buckets {
 
 /// Counting sort of item(i), i < count, by key(i) < num_keys.
 template <class Item, class Key, class Make>
-Buckets<Item> bucket_sort(std::size_t num_keys, std::size_t count, Key&& key, Make&& item) {
+Buckets<Item> bucket_sort(const RunContext& context, std::size_t num_keys, std::size_t count, Key&& key, Make&& item) {
   Buckets<Item> buckets;
   buckets.offset.assign(num_keys + 2, 0);
-  for (std::size_t i = 0; i < count; ++i) ++buckets.offset[key(i) + 2];
+  for (std::size_t i = 0; i < count; ++i) {
+    poll(context, i);
+    ++buckets.offset[key(i) + 2];
+  }
   std::partial_sum(buckets.offset.begin(), buckets.offset.end(), buckets.offset.begin());
   buckets.items.resize(count);
-  for (std::size_t i = 0; i < count; ++i) buckets.items[buckets.offset[key(i) + 1]++] = item(i);
+  for (std::size_t i = 0; i < count; ++i) {
+    poll(context, i);
+    buckets.items[buckets.offset[key(i) + 1]++] = item(i);
+  }
   buckets.offset.pop_back();
   return buckets;
 }
@@ -44,8 +52,8 @@ struct EdgeEnd {
 
 class SheetCutter {
  public:
-  SheetCutter(std::span<const Vec3> positions, std::vector<Triangle> triangles)
-      : positions_(positions), triangles_(std::move(triangles)) {}
+  SheetCutter(std::span<const Vec3> positions, std::vector<Triangle> triangles, const RunContext& context)
+      : context_(context), positions_(positions), triangles_(std::move(triangles)) {}
 
   Sheets run(MeshOddities& oddities) {
     oddities.duplicate_faces += remove_duplicates();
@@ -67,13 +75,14 @@ class SheetCutter {
   std::size_t remove_duplicates() {
     using Face = std::array<Index, 3>;  // two larger vertices, face
     const auto smallest = [&](std::size_t f) { return std::ranges::min(triangles_[f]); };
-    auto faces = bucket_sort<Face>(positions_.size(), triangles_.size(), smallest, [&](std::size_t f) {
+    auto faces = bucket_sort<Face>(context_, positions_.size(), triangles_.size(), smallest, [&](std::size_t f) {
       Triangle t = triangles_[f];
       std::ranges::sort(t);
       return Face{t[1], t[2], static_cast<Index>(f)};
     });
     std::vector<std::uint8_t> duplicate(triangles_.size(), 0);
     for (std::size_t v = 0; v < positions_.size(); ++v) {
+      poll(context_, v);
       const auto here = faces.at(v);
       std::ranges::sort(here);
       for (std::size_t i = 1; i < here.size(); ++i) {
@@ -91,17 +100,21 @@ class SheetCutter {
 
   void group_edges() {
     const auto lower = [&](std::size_t h) { return std::min(from(static_cast<Index>(h)), to(static_cast<Index>(h))); };
-    edges_ = bucket_sort<EdgeEnd>(positions_.size(), 3 * triangles_.size(), lower, [&](std::size_t i) {
+    edges_ = bucket_sort<EdgeEnd>(context_, positions_.size(), 3 * triangles_.size(), lower, [&](std::size_t i) {
       const Index h = static_cast<Index>(i);
       return EdgeEnd{std::max(from(h), to(h)), h};
     });
-    for (std::size_t v = 0; v < positions_.size(); ++v) std::ranges::sort(edges_.at(v));
+    for (std::size_t v = 0; v < positions_.size(); ++v) {
+      poll(context_, v);
+      std::ranges::sort(edges_.at(v));
+    }
   }
 
   // body(the half-edges over one pair of vertices), for every edge.
   template <class Body>
   void for_each_edge(Body&& body) {
     for (std::size_t v = 0; v < positions_.size(); ++v) {
+      poll(context_, v);
       std::span<const EdgeEnd> rest = edges_.at(v);
       while (!rest.empty()) {
         std::size_t count = 1;
@@ -163,10 +176,12 @@ class SheetCutter {
     std::vector<Index> queue;
     std::size_t num_turned = 0;
     for (Index seed = 0; seed < triangles_.size(); ++seed) {
+      poll(context_, seed);
       if (seen[seed]) continue;
       queue.assign(1, seed);
       seen[seed] = 1;
       for (std::size_t i = 0; i < queue.size(); ++i) {
+        poll(context_, i);
         const Index f = queue[i];
         for (Index h = 3 * f; h < 3 * f + 3; ++h) {
           if (twin_[h] == kNoIndex) continue;
@@ -195,9 +210,13 @@ class SheetCutter {
     // Turned over, (a, b, c) is (a, c, b): its first and last half-edges trade places.
     const auto renamed = [&](Index h) { return turned[face_of(h)] && h % 3 != 1 ? h - h % 3 + (2 - h % 3) : h; };
     std::vector<Index> twin(twin_.size());
-    for (Index h = 0; h < twin_.size(); ++h) twin[renamed(h)] = twin_[h] == kNoIndex ? kNoIndex : renamed(twin_[h]);
+    for (Index h = 0; h < twin_.size(); ++h) {
+      poll(context_, h);
+      twin[renamed(h)] = twin_[h] == kNoIndex ? kNoIndex : renamed(twin_[h]);
+    }
     twin_.swap(twin);
     for (std::size_t v = 0; v < positions_.size(); ++v) {
+      poll(context_, v);
       for (EdgeEnd& end : edges_.at(v)) end.half_edge = renamed(end.half_edge);
     }
     for (std::size_t f = 0; f < triangles_.size(); ++f) {
@@ -210,6 +229,7 @@ class SheetCutter {
     fan_.resize(twin_.size());
     std::iota(fan_.begin(), fan_.end(), Index{0});
     for (Index h = 0; h < twin_.size(); ++h) {
+      poll(context_, h);
       if (twin_[h] == kNoIndex || twin_[h] < h) continue;
       join(h, next(twin_[h]));
       join(next(h), twin_[h]);
@@ -254,11 +274,12 @@ class SheetCutter {
   Sheets number_fans() {
     Sheets sheets;
     const auto vertex = [&](std::size_t corner) { return from(static_cast<Index>(corner)); };
-    auto corners = bucket_sort<Index>(positions_.size(), fan_.size(), vertex,
+    auto corners = bucket_sort<Index>(context_, positions_.size(), fan_.size(), vertex,
                                       [](std::size_t corner) { return static_cast<Index>(corner); });
     std::vector<Index> number(fan_.size(), kNoIndex);
     sheets.triangles = triangles_;
     for (Index v = 0; v < positions_.size(); ++v) {
+      poll(context_, v);
       for (const Index corner : corners.at(v)) {
         Index& copy = number[fan(corner)];
         if (copy == kNoIndex) {
@@ -272,6 +293,7 @@ class SheetCutter {
     return sheets;
   }
 
+  const RunContext& context_;
   std::span<const Vec3> positions_;
   std::vector<Triangle> triangles_;
   std::vector<Index> twin_;             // per half-edge: the one it is paired with
@@ -282,8 +304,9 @@ class SheetCutter {
 
 }  // namespace
 
-Sheets cut_into_sheets(std::span<const Vec3> positions, std::vector<Triangle> triangles, MeshOddities& oddities) {
-  return SheetCutter(positions, std::move(triangles)).run(oddities);
+Sheets cut_into_sheets(std::span<const Vec3> positions, std::vector<Triangle> triangles, MeshOddities& oddities,
+                       const RunContext& context) {
+  return SheetCutter(positions, std::move(triangles), context).run(oddities);
 }
 
 }  // namespace shapelight::simplification

@@ -14,6 +14,6 @@ struct Sheets {
 /// The general path of make_manifold(). Pre: indices in range, no face names a vertex twice.
 /// Counts duplicate and reoriented faces in `oddities`.
 [[nodiscard]] Sheets cut_into_sheets(std::span<const Vec3> positions, std::vector<Triangle> triangles,
-                                     MeshOddities& oddities);
+                                     MeshOddities& oddities, const RunContext& context);
 
 }  // namespace shapelight::simplification

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <optional>
 
+#include "core/poll.hpp"
 #include "shapelight/core/error.hpp"
 #include "shapelight/data/geometry.hpp"
 #include "simplify/measured_collapse.hpp"
@@ -43,6 +44,20 @@ struct WorkFrame {
   [[nodiscard]] Vec3 from(const Vec3& p) const { return unit * p + center; }
 };
 
+// A counting sort, stable.
+void sort_by_first_vertex(std::vector<Triangle>& triangles, std::size_t num_vertices, const RunContext& context) {
+  const auto first = [](const Triangle& t) { return std::min({t[0], t[1], t[2]}); };
+  std::vector<std::size_t> next(num_vertices + 1, 0);
+  for (const Triangle& t : triangles) ++next[first(t) + 1];
+  std::partial_sum(next.begin(), next.end(), next.begin());
+  std::vector<Triangle> sorted(triangles.size());
+  for (std::size_t f = 0; f < triangles.size(); ++f) {
+    poll(context, f);
+    sorted[next[first(triangles[f])]++] = triangles[f];
+  }
+  triangles.swap(sorted);
+}
+
 // The mesh with its vertices, and faces by their first vertex, along a Morton curve: what is near is near in memory.
 ManifoldMesh along_morton_curve(const ManifoldMesh& mesh, const RunContext& context) {
   const BoundingBox box = bounding_box(mesh.mesh.positions);
@@ -51,6 +66,7 @@ ManifoldMesh along_morton_curve(const ManifoldMesh& mesh, const RunContext& cont
   std::vector<Index> place(order.size());
   ManifoldMesh sorted;
   for (Index i = 0; i < order.size(); ++i) {
+    poll(context, i);
     const Index v = order[i];
     place[v] = i;
     sorted.mesh.positions.push_back(mesh.mesh.positions[v]);
@@ -61,12 +77,10 @@ ManifoldMesh along_morton_curve(const ManifoldMesh& mesh, const RunContext& cont
   }
   const auto renumber = [&](Index& v) { v = v == kNoIndex ? kNoIndex : place[v]; };
   for (std::array<Index, 2>& ends : sorted.line) std::for_each(ends.begin(), ends.end(), renumber);
+  context.check();
   sorted.mesh.triangles = mesh.mesh.triangles;
   for (Triangle& t : sorted.mesh.triangles) std::for_each(t.begin(), t.end(), renumber);
-  std::stable_sort(sorted.mesh.triangles.begin(), sorted.mesh.triangles.end(),
-                   [](const Triangle& a, const Triangle& b) {
-                     return *std::min_element(a.begin(), a.end()) < *std::min_element(b.begin(), b.end());
-                   });
+  sort_by_first_vertex(sorted.mesh.triangles, order.size(), context);
   return sorted;
 }
 
@@ -83,6 +97,7 @@ class Ssim {
         input_(along_morton_curve(manifold, context)),
         input_source_(input_.source),
         target_(target) {
+    context.check();
     std::iota(input_.source.begin(), input_.source.end(), Index{0});
     const double area = total_area(input_.mesh);
     const double vertices = static_cast<double>(target.vertices > 0 ? target.vertices : target.faces / 2 + 1);
@@ -135,6 +150,7 @@ class Ssim {
     const bool is_needed = coarse.vertices > 0 ? coarse.vertices < input_.mesh.positions.size()
                                                : coarse.faces < input_.mesh.triangles.size();
     if (!is_needed) return input_;
+    context_.check();
     ManifoldMesh surface_mesh = input_;  // quadrics would follow the noise
     surface_mesh.mesh.positions.assign(surface().begin(), surface().end());
     ManifoldMesh collapsed = collapse_quadrics(std::move(surface_mesh), coarse,
@@ -177,6 +193,7 @@ class Ssim {
 
   void refine(MeasuredMesh& measured, std::optional<InputSurface>& original) {
     const RunContext context = context_.phase(0.6, 1.0, "flip and move");
+    context.check();
     const std::size_t enough = measured.mesh.num_live_vertices() / 200;
     for (int pass = 0; pass < kMaxFlipPasses; ++pass) {
       if (flip_edges(measured, context) <= enough) break;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/poll.hpp"
+
 namespace shapelight::simplification {
 
 namespace {
@@ -99,11 +101,14 @@ bool folds_faces(const LiveMesh& mesh, Index u, Index v) {
   return false;
 }
 
-std::vector<std::vector<Index>> independent_classes(const LiveMesh& mesh, std::span<const Index> vertices) {
+std::vector<std::vector<Index>> independent_classes(const LiveMesh& mesh, std::span<const Index> vertices,
+                                                    const RunContext& context) {
   constexpr int kMaxClasses = 64;
   std::vector<std::vector<Index>> classes;
   std::vector<std::int8_t> class_of(mesh.num_vertices(), -1);
-  for (const Index v : vertices) {
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    poll(context, i);
+    const Index v = vertices[i];
     std::uint64_t taken = 0;
     for (const Index f : mesh.star(v)) {
       for (const Index w : mesh.face(f)) {

@@ -40,7 +40,7 @@ struct StarShape {
 
 /// Splits vertices into classes of which no two members are neighbours: those of a class can be worked on at once.
 /// Greedy in the order given; classes keep that order.
-[[nodiscard]] std::vector<std::vector<Index>> independent_classes(const LiveMesh& mesh,
-                                                                  std::span<const Index> vertices);
+[[nodiscard]] std::vector<std::vector<Index>> independent_classes(const LiveMesh& mesh, std::span<const Index> vertices,
+                                                                  const RunContext& context);
 
 }  // namespace shapelight::simplification

@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/poll.hpp"
 #include "shapelight/spatial/kd_tree.hpp"
 #include "shapelight/spatial/triangle_tree.hpp"
 
@@ -111,8 +112,8 @@ std::optional<Flip> best_flip(const TriangleMesh& mesh, const EdgeUses& edges, I
 // Where no flip helps, a corner of the face moves.
 class Relocation {
  public:
-  Relocation(const TriangleMesh& reference, SimplifiedMesh& result, Placement placement)
-      : reference_(reference), result_(result), placement_(placement) {}
+  Relocation(const TriangleMesh& reference, SimplifiedMesh& result, Placement placement, const RunContext& context)
+      : reference_(reference), result_(result), placement_(placement), context_(context) {}
 
   // Makes the move that leaves the faces around best, if any leaves none of them folded on all its neighbours.
   template <class IsFixed>
@@ -214,7 +215,7 @@ class Relocation {
       place_of_.push_back(v);
       positions.push_back(reference_.positions[v]);
     }
-    places_.emplace(positions);
+    places_.emplace(positions, context_);
     used_.assign(in_face.size(), 0);
     for (const Index source : result_.source_vertex) used_[source] = 1;
   }
@@ -242,6 +243,7 @@ class Relocation {
   const TriangleMesh& reference_;
   SimplifiedMesh& result_;
   Placement placement_;
+  const RunContext& context_;
   std::optional<KdTree> places_;
   std::vector<Index> place_of_;     // point of the tree -> input vertex
   std::vector<std::uint8_t> used_;  // per input vertex
@@ -253,10 +255,15 @@ class Relocation {
 std::vector<Index> turned_faces(const TriangleMesh& reference, const TriangleMesh& mesh, const EdgeUses& edges,
                                 const RunContext& context) {
   std::vector<Vec3> normal(mesh.triangles.size());
-  for (std::size_t f = 0; f < normal.size(); ++f) normal[f] = normal_of(mesh.positions, mesh.triangles[f]);
+  for (std::size_t f = 0; f < normal.size(); ++f) {
+    poll(context, f);
+    normal[f] = normal_of(mesh.positions, mesh.triangles[f]);
+  }
   std::vector<std::uint8_t> has_neighbor(mesh.triangles.size(), 0), supported(mesh.triangles.size(), 0);
   std::vector<std::uint8_t> at_junction(mesh.positions.size(), 0);
+  std::size_t visited = 0;
   edges.for_each([&](Index low, Index high, std::span<const EdgeUse> faces) {
+    poll(context, visited++);
     if (faces.size() > 2) at_junction[low] = at_junction[high] = 1;
     for (const EdgeUse& f : faces) {
       for (const EdgeUse& g : faces) {
@@ -272,6 +279,7 @@ std::vector<Index> turned_faces(const TriangleMesh& reference, const TriangleMes
     if (has_neighbor[f] == 0 || supported[f] != 0) continue;
     const auto& [a, b, c] = mesh.triangles[f];
     if (at_junction[a] || at_junction[b] || at_junction[c]) continue;
+    context.check();
     if (!tree) tree.emplace(reference, context);
     if (looks_against(mesh, f, reference, *tree)) turned.push_back(f);
   }
@@ -284,13 +292,14 @@ std::size_t unfold_faces(const TriangleMesh& reference, SimplifiedMesh& result, 
   for (const auto& [a, b] : features) is_feature[a] = is_feature[b] = 1;
   const auto is_fixed = [&](Index v) { return !is_feature.empty() && is_feature[result.source_vertex[v]] != 0; };
   TriangleMesh& mesh = result.mesh;
-  Relocation relocation(reference, result, placement);
+  Relocation relocation(reference, result, placement, context);
   for (int pass = 0;; ++pass) {
-    const EdgeUses edges(mesh);
+    const EdgeUses edges(mesh, context);
     const std::vector<Index> turned = turned_faces(reference, mesh, edges, context);
     if (turned.empty() || pass == kMaxPasses) return turned.size();
     std::vector<std::uint8_t> touched(mesh.positions.size(), 0);  // edges there are out of date until the next pass
     for (const Index f : turned) {
+      context.check();
       const Triangle corners = mesh.triangles[f];
       if (const std::optional<Flip> flip = best_flip(mesh, edges, f, is_fixed)) {
         const std::array<Index, 4> quad = {flip->new_f[0], flip->new_f[1], flip->new_f[2], flip->new_g[2]};

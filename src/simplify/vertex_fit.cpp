@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/parallel.hpp"
+#include "core/poll.hpp"
 #include "simplify/star_shape.hpp"
 
 namespace shapelight::simplification {
@@ -259,6 +260,7 @@ std::vector<std::size_t> put_folded_back(MeasuredMesh& measured, std::span<const
         kChunk);
     const std::size_t so_far = back.size();
     for (std::size_t i = 0; i < vertices.size(); ++i) {
+      poll(context, i);
       if (folded[i] != 0 && trial.force(measured, vertices[i], before[i])) back.push_back(i);
     }
     if (back.size() == so_far) return back;
@@ -267,7 +269,7 @@ std::vector<std::size_t> put_folded_back(MeasuredMesh& measured, std::span<const
 
 void fit_vertices(MeasuredMesh& measured, std::span<const Index> vertices, double normal_weight, InputSurface& input,
                   const RunContext& context) {
-  for (const std::vector<Index>& independent : independent_classes(measured.mesh, vertices)) {
+  for (const std::vector<Index>& independent : independent_classes(measured.mesh, vertices, context)) {
     std::vector<Vec3> before(independent.size());
     parallel::for_chunks(
         context, independent.size(),

@@ -79,7 +79,7 @@ std::size_t move_vertices(MeasuredMesh& measured, InputPlaces& places, double no
     if (mesh.is_alive(v) && !mesh.locked[v]) movable.push_back(v);
   }
   std::size_t moves = 0;
-  for (const std::vector<Index>& independent : independent_classes(mesh, movable)) {
+  for (const std::vector<Index>& independent : independent_classes(mesh, movable, context)) {
     std::vector<Index> left(independent.size(), kNoIndex);
     std::vector<Vec3> before(independent.size());
     parallel::for_chunks(

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/poll.hpp"
+
 namespace shapelight::simplification {
 namespace {
 
@@ -79,19 +81,23 @@ Fan order_large_fan(std::span<Wedge> wedges) {
 
 }  // namespace
 
-Wedges collect_wedges(std::size_t num_vertices, std::span<const Triangle> triangles) {
+Wedges collect_wedges(std::size_t num_vertices, std::span<const Triangle> triangles, const RunContext& context) {
   Wedges wedges;
   // Counts two places ahead: after the running sum, offset[v + 1] is where the next wedge of v goes.
   wedges.offset.assign(num_vertices + 2, 0);
   Index* const offset = wedges.offset.data();
-  for (const Triangle& t : triangles) {
+  for (std::size_t f = 0; f < triangles.size(); ++f) {
+    poll(context, f);
+    const Triangle& t = triangles[f];
     ++offset[t[0] + 2];
     ++offset[t[1] + 2];
     ++offset[t[2] + 2];
   }
   for (std::size_t v = 0; v < num_vertices; ++v) offset[v + 2] += offset[v + 1];
   wedges.items.resize(3 * triangles.size());
-  for (const Triangle& t : triangles) {
+  for (std::size_t f = 0; f < triangles.size(); ++f) {
+    poll(context, f);
+    const Triangle& t = triangles[f];
     wedges.items[offset[t[0] + 1]++] = {t[1], t[2]};
     wedges.items[offset[t[1] + 1]++] = {t[2], t[0]};
     wedges.items[offset[t[2] + 1]++] = {t[0], t[1]};

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "shapelight/core/run_context.hpp"
 #include "shapelight/core/types.hpp"
 
 namespace shapelight::simplification {
@@ -25,7 +26,8 @@ struct Wedges {
 };
 
 /// In order of the triangles at every vertex. Pre: no index out of range.
-[[nodiscard]] Wedges collect_wedges(std::size_t num_vertices, std::span<const Triangle> triangles);
+[[nodiscard]] Wedges collect_wedges(std::size_t num_vertices, std::span<const Triangle> triangles,
+                                    const RunContext& context);
 
 enum class Fan : std::uint8_t {
   Closed,    ///< the faces go once around the vertex

@@ -46,8 +46,8 @@ float half_area(const Box& box) {
 
 class Builder {
  public:
-  explicit Builder(std::span<const Box> boxes);
-  BoxTree build(const RunContext& context);
+  Builder(std::span<const Box> boxes, const RunContext& context);
+  BoxTree build();
 
  private:
   // A child that another thread builds: its group, and where its node's index belongs.
@@ -61,10 +61,11 @@ class Builder {
   std::uint32_t partition(const Group& group, std::size_t depth);
   std::uint32_t add_node(std::vector<BoxNode>& nodes, const Group& group, std::size_t depth, std::vector<Task>* tasks);
 
+  const RunContext& context_;
   std::vector<Entry> entries_;
 };
 
-Builder::Builder(std::span<const Box> boxes) : entries_(boxes.size()) {
+Builder::Builder(std::span<const Box> boxes, const RunContext& context) : context_(context), entries_(boxes.size()) {
   for (std::size_t i = 0; i < boxes.size(); ++i) entries_[i] = {boxes[i], static_cast<Index>(i)};
 }
 
@@ -154,6 +155,7 @@ std::uint32_t Builder::add_node(std::vector<BoxNode>& nodes, const Group& group,
       if (child[k].size() > 1 && (!widest || half_area(child[k].box) > half_area(widest->box))) widest = &child[k];
     }
     if (!widest) break;
+    if (tasks) context_.check();
     const std::uint32_t middle = partition(*widest, depth);
     child[count++] = group_of(middle, widest->end);
     *widest = group_of(widest->begin, middle);
@@ -179,12 +181,12 @@ std::uint32_t Builder::add_node(std::vector<BoxNode>& nodes, const Group& group,
   return static_cast<std::uint32_t>(at);
 }
 
-BoxTree Builder::build(const RunContext& context) {
+BoxTree Builder::build() {
   BoxTree tree;
   std::vector<Task> tasks;
   add_node(tree.nodes, group_of(0, static_cast<std::uint32_t>(entries_.size())), 0, &tasks);
   parallel::for_chunks(
-      context, tasks.size(),
+      context_, tasks.size(),
       [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
           tasks[i].nodes.reserve(tasks[i].group.size() / 2);
@@ -192,7 +194,11 @@ BoxTree Builder::build(const RunContext& context) {
         }
       },
       1);
+  std::size_t num_nodes = tree.nodes.size();
+  for (const Task& task : tasks) num_nodes += task.nodes.size();
+  tree.nodes.reserve(num_nodes);
   for (const Task& task : tasks) {
+    context_.check();
     const auto base = static_cast<std::uint32_t>(tree.nodes.size());
     tree.nodes[task.node].child[task.slot] = base;
     for (BoxNode node : task.nodes) {
@@ -202,6 +208,7 @@ BoxTree Builder::build(const RunContext& context) {
       tree.nodes.push_back(node);
     }
   }
+  context_.check();
   tree.order.resize(entries_.size());
   for (std::size_t i = 0; i < entries_.size(); ++i) tree.order[i] = entries_[i].item;
   return tree;
@@ -209,6 +216,8 @@ BoxTree Builder::build(const RunContext& context) {
 
 }  // namespace
 
-BoxTree build_box_tree(std::span<const Box> boxes, const RunContext& context) { return Builder(boxes).build(context); }
+BoxTree build_box_tree(std::span<const Box> boxes, const RunContext& context) {
+  return Builder(boxes, context).build();
+}
 
 }  // namespace shapelight

@@ -9,6 +9,7 @@ namespace shapelight {
 namespace {
 
 constexpr std::uint32_t kLeafSize = 12;
+constexpr std::uint32_t kPollSize = 4096;  // smaller subtrees are built without a look at the stop token
 constexpr std::size_t kQueryChunk = 1024;  // leaves are walked in order, so a chunk of slots stays in the cache
 using Point = std::array<double, 3>;
 
@@ -61,11 +62,11 @@ class KdTree::Candidates {
   double worst_ = std::numeric_limits<double>::infinity();
 };
 
-KdTree::KdTree(std::span<const Vec3> points) : index_(points.size()) {
+KdTree::KdTree(std::span<const Vec3> points, const RunContext& context) : index_(points.size()) {
   for (std::size_t i = 0; i < points.size(); ++i) index_[i] = static_cast<Index>(i);
   if (!points.empty()) {
     nodes_.reserve(2 * points.size() / (kLeafSize / 2) + 2);
-    build(0, static_cast<std::uint32_t>(points.size()), 0, points);
+    build(0, static_cast<std::uint32_t>(points.size()), 0, points, context);
   }
   x_.resize(points.size());
   y_.resize(points.size());
@@ -78,8 +79,9 @@ KdTree::KdTree(std::span<const Vec3> points) : index_(points.size()) {
   }
 }
 
-std::uint32_t KdTree::build(std::uint32_t begin, std::uint32_t end, std::uint32_t parent,
-                            std::span<const Vec3> points) {
+std::uint32_t KdTree::build(std::uint32_t begin, std::uint32_t end, std::uint32_t parent, std::span<const Vec3> points,
+                            const RunContext& context) {
+  if (end - begin > kPollSize) context.check();
   const auto id = static_cast<std::uint32_t>(nodes_.size());
   Vec3 min = points[index_[begin]];
   Vec3 max = min;
@@ -98,8 +100,8 @@ std::uint32_t KdTree::build(std::uint32_t begin, std::uint32_t end, std::uint32_
     const double cb = points[b][axis];
     return ca < cb || (ca == cb && a < b);
   });
-  build(begin, middle, id, points);
-  const std::uint32_t right = build(middle, end, id, points);
+  build(begin, middle, id, points, context);
+  const std::uint32_t right = build(middle, end, id, points, context);
   nodes_[id].right = right;
   return id;
 }

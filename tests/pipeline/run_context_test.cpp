@@ -1,70 +1,17 @@
 #include <gtest/gtest.h>
 
-#include <functional>
 #include <set>
 
-#include "shapelight/core/error.hpp"
 #include "shapelight/pipeline/fields.hpp"
 #include "shapelight/pipeline/sample.hpp"
 #include "support/data_files.hpp"
+#include "support/watch_progress.hpp"
 
 // Progress and cancellation of the whole pipeline.
 namespace shapelight {
 namespace {
 
 using namespace shapelight::testing;
-
-using Work = std::function<void(const RunContext&)>;
-
-struct Seen {
-  std::vector<double> fractions;
-  std::vector<std::string> phases;
-};
-
-Seen watch(const Work& work) {
-  Seen seen;
-  RunContext context;
-  context.progress = [&](double fraction, std::string_view phase) {
-    seen.fractions.push_back(fraction);
-    seen.phases.emplace_back(phase);
-  };
-  work(context);
-  return seen;
-}
-
-void expect_monotone_to_one(const Seen& seen) {
-  ASSERT_FALSE(seen.fractions.empty());
-  for (std::size_t i = 1; i < seen.fractions.size(); ++i) {
-    EXPECT_GE(seen.fractions[i], seen.fractions[i - 1]) << seen.phases[i - 1] << " -> " << seen.phases[i];
-  }
-  EXPECT_GE(seen.fractions.front(), 0.0);
-  EXPECT_EQ(seen.fractions.back(), 1.0);
-}
-
-// Asks for a stop at each call of the progress function in turn; only the last one may come too late.
-void expect_cancel_everywhere(const Work& work) {
-  const std::size_t num_calls = watch(work).fractions.size();
-  for (std::size_t at = 0; at + 1 < num_calls; ++at) {
-    std::stop_source stop;
-    RunContext context;
-    context.stop = stop.get_token();
-    std::size_t call = 0;
-    std::string phase;
-    double fraction = 0.0;
-    context.progress = [&](double f, std::string_view p) {
-      if (call++ == at) {
-        phase = p;
-        fraction = f;
-        stop.request_stop();
-      }
-    };
-    try {
-      work(context);
-      EXPECT_EQ(fraction, 1.0) << "call " << at << " of " << num_calls << ", " << phase << ": ran to its end";
-    } catch (const Cancelled&) {
-    }
-  }
-}
 
 std::vector<std::pair<std::string, Work>> works(const Geometry& geometry) {
   const auto sampling = [&geometry](const SampleOptions& options) -> Work {
@@ -105,7 +52,8 @@ TEST(PipelineProgress, NamesThePhases) {
     (void)sample(geometry, {.count = 100, .ratio = {}, .spacing = {}}, sample_preset(Preset::Paper), context);
   });
   const std::set<std::string> phases(seen.phases.begin(), seen.phases.end());
-  for (const char* phase : {"build graph", "estimate curvature", "non-local means", "retinex", "segment", "choose points"}) {
+  for (const char* phase :
+       {"build graph", "estimate curvature", "non-local means", "retinex", "segment", "choose points"}) {
     EXPECT_TRUE(phases.contains(phase)) << phase;
   }
 }

@@ -22,7 +22,7 @@ Camera plain_camera(int height) {
 Frame draw(const Geometry& geometry, int width, int height, const Paint& paint = {}) {
   Surface surface;
   surface.triangles = geometry.triangles;
-  surface.normals = triangle_normals(geometry.positions, geometry.triangles);
+  surface.normals = triangle_normals(geometry.positions, geometry.triangles, {});
   return rasterize(geometry, surface, paint, plain_camera(height), width, height, {});
 }
 
@@ -152,7 +152,7 @@ TEST(TriangulateGrid, IsCutWhereTheDepthJumps) {
   }
   grid.pixel[0] = kNoIndex;
   geometry.grid = grid;
-  const auto triangles = triangulate_grid(geometry);
+  const auto triangles = triangulate_grid(geometry, {});
   EXPECT_EQ(triangles.size(), 2U * 2U * 4U - 1U);
   for (const Triangle& t : triangles) {
     for (const Index i : t) {
@@ -164,7 +164,7 @@ TEST(TriangulateGrid, IsCutWhereTheDepthJumps) {
 
 TEST(TriangleNormals, PointAwayFromTheCentreOfASphere) {
   const auto sphere = testing::sphere(3, 2.0);
-  const auto normals = triangle_normals(sphere.positions, sphere.triangles);
+  const auto normals = triangle_normals(sphere.positions, sphere.triangles, {});
   for (std::size_t i = 0; i < normals.size(); ++i) {
     EXPECT_GT(normals[i].cast<double>().dot(sphere.positions[i].normalized()), 0.9995);
   }

@@ -15,7 +15,7 @@ namespace {
 TEST(CellGrid, SeesEveryPointWithinACellSize) {
   const std::vector<Vec3> points = test::random_points(400, 3);
   for (const double cell : {0.01, 0.1, 0.3, 2.0}) {
-    const CellGrid grid(points, cell);
+    const CellGrid grid(points, cell, {});
     for (std::size_t slot = 0; slot < grid.size(); ++slot) {
       std::set<std::uint32_t> seen;
       grid.for_each_near(slot, [&](std::uint32_t other) { EXPECT_TRUE(seen.insert(other).second); });
@@ -33,7 +33,7 @@ TEST(CellGrid, FindsACellSizeForACount) {
   const std::vector<Vec3> surface = test::ellipsoid_graph(20000).position;
   for (const auto& points : {surface, line, test::random_points(20000, 8)}) {
     for (const std::size_t count : {1U, 2U, 10U, 300U, 5000U, 20000U}) {
-      const std::size_t cells = CellGrid(points, find_cell_size(points, count, {})).num_cells();
+      const std::size_t cells = CellGrid(points, find_cell_size(points, count, {}), {}).num_cells();
       EXPECT_LE(cells, count);
       EXPECT_GE(static_cast<double>(cells), (count < 20 ? 0.4 : 0.95) * static_cast<double>(count));
     }
@@ -101,7 +101,7 @@ TEST(FillFarthest, TiesDoNotFollowTheOrderOfThePoints) {
 
 TEST(ThrowDarts, ObeysOrderRadiusAndLimit) {
   const std::vector<Vec3> points = test::random_points(500, 9);
-  const CellGrid grid(points, 0.2);
+  const CellGrid grid(points, 0.2, {});
   std::vector<std::uint32_t> order(points.size());
   std::iota(order.rbegin(), order.rend(), 0U);
   std::vector<std::uint32_t> expected;

@@ -70,6 +70,7 @@ struct BuiltGraph {
 /// neighbouring pixels; with a viewpoint, spacing is measured relative to the distance from it, as pixels fan out.
 /// Indices are those of the points.
 [[nodiscard]] std::vector<Triangle> range_image_triangles(std::span<const Vec3> positions, const RangeGrid& grid,
-                                                          const std::optional<Vec3>& viewpoint, double depth_jump);
+                                                          const std::optional<Vec3>& viewpoint, double depth_jump,
+                                                          const RunContext& context = {});
 
 }  // namespace shapelight

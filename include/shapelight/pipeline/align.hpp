@@ -79,6 +79,7 @@ struct AlignResult {
 
 /// All finite points of the placed scans (group 0) in the world frame, scan after scan, as one cloud: with the
 /// attributes that all of these scans have, and `scan`, the index of the scan.
-[[nodiscard]] Geometry merge_scans(std::span<const Geometry> scans, const AlignResult& aligned);
+[[nodiscard]] Geometry merge_scans(std::span<const Geometry> scans, const AlignResult& aligned,
+                                   const RunContext& context = {});
 
 }  // namespace shapelight

@@ -26,7 +26,8 @@ struct Neighbor {
 /// Cost: building O(n log n), a query O(k + log n); about 45 bytes per point.
 class KdTree {
  public:
-  explicit KdTree(std::span<const Vec3> points);
+  /// Throws Cancelled.
+  explicit KdTree(std::span<const Vec3> points, const RunContext& context = {});
 
   [[nodiscard]] std::size_t size() const { return index_.size(); }
   /// The nearest point; index kNoIndex in an empty tree.
@@ -50,7 +51,8 @@ class KdTree {
     std::uint32_t parent;
   };
   class Candidates;
-  std::uint32_t build(std::uint32_t begin, std::uint32_t end, std::uint32_t parent, std::span<const Vec3> points);
+  std::uint32_t build(std::uint32_t begin, std::uint32_t end, std::uint32_t parent, std::span<const Vec3> points,
+                      const RunContext& context);
   void search(std::uint32_t node, const std::array<double, 3>& query, Candidates& found) const;
   void scan(const Node& leaf, const std::array<double, 3>& query, Candidates& found) const;
 

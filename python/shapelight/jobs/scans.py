@@ -50,7 +50,7 @@ def register(
     views = moving._view(attributes=False), fixed._view(attributes=False)
     with as_callable(progress) as report:
         found = _core.register_scans(*views, start, given, threads, report)
-    result = RegisterResult(**found, source=source, geometry=moving)
+    result = RegisterResult(**found, source=source, geometry=moving, target=fixed)
     if not result.confidence >= min_confidence:
         raise _withheld(
             f"confidence {result.confidence:.2f} is below min_confidence {min_confidence:g}: {result.doubt}", result

@@ -72,8 +72,9 @@ def simplify(
             if not allow_partial or error.reachable == 0:
                 raise
             is_partial = True
-            most = (None, error.reachable) if num_faces else (error.reachable, None)
-            found = _core.simplify(view, *most, None, None, preset, given, threads, report)
+            most = error.reachable
+            num_vertices, num_faces = (None, most) if num_faces else (most, None)
+            found = _core.simplify(view, num_vertices, num_faces, None, None, preset, given, threads, report)
     simplified = Geometry(**found.pop("geometry"))
     measured = found.pop("measured")
     return SimplifyResult(
@@ -83,6 +84,7 @@ def simplify(
         **found,
         is_partial=is_partial,
         source=mesh_or_vertices,
+        original=geometry,
         geometry=simplified,
     )
 

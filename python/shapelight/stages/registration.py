@@ -380,7 +380,8 @@ def prepare_scan(
     with as_callable(progress) as report:
         ready = _core.prepare_scan(geometry._view(attributes=False), name, {**options}, threads, report)
     full, samples = RegistrationCloud._of(ready.full), RegistrationCloud._of(ready.samples)
-    return PreparedScan(ready.origin, full, samples, ready.keypoints, scan, geometry, ready)
+    origin, keypoints = np.asarray(ready.origin), np.asarray(ready.keypoints)
+    return PreparedScan(origin, full, samples, keypoints, scan, geometry, ready)
 
 
 @described("register")
@@ -400,4 +401,4 @@ def register_prepared(
     start = None if init is None else as_transform(init, "init")
     with as_callable(progress) as report:
         found = _core.register_prepared(source._scan, target._scan, start, {**options}, threads, report)
-    return RegisterResult(**found, source=source.source, geometry=source.geometry)
+    return RegisterResult(**found, source=source.source, geometry=source.geometry, target=target.geometry)

@@ -53,7 +53,7 @@ ELSEWHERE = {
     "stop_reason_name": "stages.RegistrationResult.__dataclass_fields__['stop']",
 }
 
-PLACES = (shapelight, stages, pictures, _core)
+PLACES = (shapelight, stages, pictures)
 
 
 def without_comments(text):

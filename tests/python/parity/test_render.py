@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import shapelight as sl
-from shapelight import _core, pictures
+from shapelight import pictures
 
 OPTIONS = {"width": 320, "height": 240, "view": "iso", "occlusion": 0.5, "dot_size": 3}
 
@@ -44,4 +44,4 @@ def test_colors(fandisk, cpp, same_bytes):
     same_bytes(lab, cpp("to_oklab", np.float64))
     same_bytes(pictures.from_oklab(lab), cpp("from_oklab", np.float32))
     same_bytes(np.array(pictures.value_range(values)), cpp("value_range", np.float64))
-    same_bytes(np.array([_core.srgb_to_linear(0.3), _core.linear_to_srgb(0.3)]), cpp("channels", np.float64))
+    same_bytes(np.array([pictures.srgb_to_linear(0.3), pictures.linear_to_srgb(0.3)]), cpp("channels", np.float64))
