@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "core/parallel.hpp"
-#include "core/poll.hpp"
 #include "sample/candidates.hpp"
 #include "sample/farthest_tree.hpp"
 #include "shapelight/core/error.hpp"
@@ -112,7 +111,7 @@ std::vector<Index> rank(std::span<const Vec3> points, std::span<const double> we
     if (picks.size() % kPicksPerPoll == 0) {
       context.report(static_cast<double>(picks.size()) / static_cast<double>(limit));
     }
-    poll(context, picks.size());
+    context.check();  // each time: the first picks bring all points closer
     const bool local = static_cast<double>(num_local) < local_share * static_cast<double>(picks.size() + 1);
     num_local += local;
     // A local pick of no weight left would repeat a chosen point.

@@ -84,7 +84,7 @@ TEST(Stop, EndsMeasuringAndDrawingAtAnyPhase) {
 }
 
 TEST(Stop, IsSeenByEveryStepThatRunsLongOnOneThread) {
-  const Geometry mesh = mesh_of(sphere(3, 1.0)), cloud = as_cloud(mesh);
+  const Geometry mesh = mesh_of(sphere(5, 1.0)), cloud = as_cloud(mesh);
   const TriangleMesh surface{mesh.positions, mesh.triangles};
   const SurfaceGraph graph = build_graph(mesh, {}).graph;
   const std::vector<double> field(graph.size(), 0.0);

@@ -185,7 +185,7 @@ TEST(IndependentClasses, NoTwoNeighboursShareOneAndNobodyIsLeftOut) {
   std::vector<Index> all(m.mesh.mesh.num_vertices());
   for (Index v = 0; v < all.size(); ++v) all[v] = v;
   std::size_t count = 0;
-  for (const std::vector<Index>& members : independent_classes(m.mesh.mesh, all)) {
+  for (const std::vector<Index>& members : independent_classes(m.mesh.mesh, all, {})) {
     count += members.size();
     for (const Index v : members) {
       std::vector<Index> ring;
