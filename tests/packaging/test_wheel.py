@@ -23,8 +23,8 @@ def test_wheel_holds_the_package_its_types_and_the_command(wheel, names):
 
 
 def test_wheel_holds_nothing_else(names):
-    allowed = re.compile(r"shapelight/(\w+/)*\w+\.(py|pyi|js|html|typed)|shapelight/py\.typed|shapelight/_core\.[\w-]+\.so"
-                         r"|shapelight\.libs/lib[\w.-]+|shapelight-[\w.]+\.dist-info/.*")
+    allowed = re.compile(r"shapelight/(\w+/)*[\w.-]+\.(py|pyi|js|css|html)|shapelight/py\.typed"
+                         r"|shapelight/_core\.[\w-]+\.so|shapelight\.libs/lib[\w.-]+|shapelight-[\w.]+\.dist-info/.*")
     assert [name for name in names if not allowed.fullmatch(name)] == []
 
 
