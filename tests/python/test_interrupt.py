@@ -13,7 +13,7 @@ import pytest
 
 import shapelight as sl
 
-GENEROUS = 5.0  # [s] how long stopping may take; without stopping, the calls below take longer
+PATIENCE = 100.0  # [s] after which a program counts as hanging
 
 MANY_POINTS = """
     import os, sys, threading, time
@@ -36,8 +36,8 @@ def start(command):
 
 
 def run_program(program, *arguments, interrupt_after=None):
-    """Runs a program that prints "ready" before its long call. Returns its exit code, its further output, what it
-    wrote to stderr, and the seconds from SIGINT to its end."""
+    """Runs a program that prints "ready" before its long call. Returns its exit code, its further output, and what it
+    wrote to stderr."""
     process = start(["-c", textwrap.dedent(MANY_POINTS) + textwrap.dedent(program), *arguments])
     assert process.stdout.readline() == "ready\n", process.communicate()[1]
     time.sleep(interrupt_after or 0.0)
@@ -45,19 +45,18 @@ def run_program(program, *arguments, interrupt_after=None):
 
 
 def end(process, interrupt):
-    begin = time.monotonic()
     if interrupt:
         process.send_signal(signal.SIGINT)
-    out, err = process.communicate(timeout=100)
-    return process.returncode, out, err, time.monotonic() - begin
+    out, err = process.communicate(timeout=PATIENCE)
+    return process.returncode, out, err
 
 
 def test_interrupt_raises_keyboard_interrupt():
-    _, out, err, seconds = run_program(
+    _, out, err = run_program(  # left alone, the call takes many times PATIENCE
         """
         print("ready", flush=True)
         try:
-            sl.sample(points, ratio=0.1)
+            sl.fields(points, variation_neighbors=1000, retinex_rings=20, retinex_neighbors=1000, threads=1)
             print("finished")
         except KeyboardInterrupt:
             print("KeyboardInterrupt")
@@ -65,11 +64,10 @@ def test_interrupt_raises_keyboard_interrupt():
         interrupt_after=0.7,
     )
     assert out == "KeyboardInterrupt\n", err
-    assert seconds < GENEROUS
 
 
 def test_the_library_works_on_after_an_interrupt():
-    code, out, err, _ = run_program(
+    code, out, err = run_program(
         """
         print("ready", flush=True)
         try:
@@ -83,7 +81,7 @@ def test_the_library_works_on_after_an_interrupt():
 
 
 def test_interrupted_write_leaves_nothing(tmp_path):
-    _, out, err, seconds = run_program(
+    _, out, err = run_program(
         """
         import pathlib, signal
         folder = pathlib.Path(sys.argv[1])
@@ -113,14 +111,13 @@ def test_interrupted_command_ends_with_130_and_leaves_nothing(tmp_path):
     out = tmp_path / "out.ply"
     process = start(["-m", "shapelight", "sample", big, "-o", out, "--ratio", "0.1", "--progress", "json"])
     assert process.stderr.readline().startswith("{")
-    code, _, err, seconds = end(process, interrupt=True)
+    code, _, err = end(process, interrupt=True)
     assert code == 130, err
     assert list(tmp_path.iterdir()) == [big]
-    assert seconds < GENEROUS
 
 
 def test_python_may_end_while_another_thread_calls():
-    code, out, err, _ = run_program(
+    code, out, err = run_program(
         """
         threading.Thread(target=lambda: sl.sample(points, ratio=0.1), daemon=True).start()
         time.sleep(0.3)
