@@ -9,8 +9,9 @@ namespace {
 
 // Raises the class of shapelight.errors that has this name.
 void raise(const char* name, const Error& error) {
-  const nb::object type = nb::module_::import_("shapelight.errors").attr(name);
-  const nb::object exception = type(std::string(error.what()));
+  const nb::module_ errors = nb::module_::import_("shapelight.errors");
+  const nb::object type = errors.attr(name);
+  const nb::object exception = type(errors.attr("in_keywords")(std::string(error.what())));
   if (const auto* unreachable = dynamic_cast<const TargetUnreachable*>(&error)) {
     exception.attr("reachable") = unreachable->reachable();
   }

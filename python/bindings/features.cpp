@@ -14,7 +14,7 @@ namespace {
 
 using Field = VectorArray<double>;
 
-nb::dict curvatures(const BuiltGraph& built, const nb::dict& given, int threads, nb::object progress) {
+nb::dict curvatures(const BuiltGraph& built, const nb::dict& given, nb::object threads, nb::object progress) {
   const auto options = make_options<CurvatureOptions>(given);
   Curvatures found = run({threads, progress},
                          [&](const RunContext& context) { return estimate_curvatures(built.graph, options, context); });
@@ -35,7 +35,7 @@ nb::object curvedness_of(const Field& k1, const Field& k2) {
 }
 
 nb::object shape_index(const BuiltGraph& built, const Field& k1, const Field& k2, double sigma, const nb::dict& given,
-                       int threads, nb::object progress) {
+                       nb::object threads, nb::object progress) {
   const auto options = make_options<ShapeIndexOptions>(given);
   const std::span<const double> a = as_span(k1), b = as_span(k2);
   return to_numpy(run({threads, progress}, [&](const RunContext& context) {
@@ -44,32 +44,33 @@ nb::object shape_index(const BuiltGraph& built, const Field& k1, const Field& k2
   }));
 }
 
-nb::object surface_variation(const BuiltGraph& built, const nb::dict& given, int threads, nb::object progress) {
+nb::object surface_variation(const BuiltGraph& built, const nb::dict& given, nb::object threads, nb::object progress) {
   const auto options = make_options<SurfaceVariationOptions>(given);
   return to_numpy(run({threads, progress}, [&](const RunContext& context) {
     return compute_surface_variation(built.graph, options, context);
   }));
 }
 
-double noise(const BuiltGraph& built, int threads, nb::object progress) {
+double noise(const BuiltGraph& built, nb::object threads, nb::object progress) {
   return run({threads, progress}, [&](const RunContext& context) { return estimate_noise(built.graph, context); });
 }
 
 nb::object denoise(const BuiltGraph& built, const Field& field, const PointsArray& direction1, const nb::dict& given,
-                   int threads, nb::object progress) {
+                   nb::object threads, nb::object progress) {
   const auto options = make_options<NonLocalMeansOptions>(given);
   return to_numpy(run({threads, progress}, [&](const RunContext& context) {
     return non_local_means(built.graph, as_span(field), as_span(direction1), options, context);
   }));
 }
 
-nb::object smooth(const BuiltGraph& built, const nb::dict& given, int threads, nb::object progress) {
+nb::object smooth(const BuiltGraph& built, const nb::dict& given, nb::object threads, nb::object progress) {
   const auto options = make_options<TaubinSmoothingOptions>(given);
   return to_numpy(run({threads, progress},
                       [&](const RunContext& context) { return smooth_positions(built.graph, options, context); }));
 }
 
-nb::dict retinex(const BuiltGraph& built, const Field& field, const nb::dict& given, int threads, nb::object progress) {
+nb::dict retinex(const BuiltGraph& built, const Field& field, const nb::dict& given, nb::object threads,
+                 nb::object progress) {
   const auto options = make_options<RetinexOptions>(given);
   RetinexResult split = run({threads, progress}, [&](const RunContext& context) {
     return decompose_retinex(built.graph, as_span(field), options, context);
@@ -80,7 +81,8 @@ nb::dict retinex(const BuiltGraph& built, const Field& field, const nb::dict& gi
   return d;
 }
 
-nb::dict segment(const BuiltGraph& built, const Field& field, const nb::dict& given, int threads, nb::object progress) {
+nb::dict segment(const BuiltGraph& built, const Field& field, const nb::dict& given, nb::object threads,
+                 nb::object progress) {
   const auto options = make_options<SegmentationOptions>(given);
   SegmentationResult cut = run({threads, progress}, [&](const RunContext& context) {
     return segment_field(built.graph, as_span(field), options, context);
@@ -99,7 +101,7 @@ GeometryKind kind_named(const std::string& name) {
 }
 
 nb::dict all_fields(const BuiltGraph& built, const std::string& kind, const std::string& preset, const nb::dict& given,
-                    int threads, nb::object progress) {
+                    nb::object threads, nb::object progress) {
   FieldsOptions options = fields_preset(enum_named<Preset>("preset", preset));
   apply_options(options, given);
   SurfaceFields fields = run({threads, progress}, [&, kind = kind_named(kind)](const RunContext& context) {
@@ -127,7 +129,7 @@ nb::dict all_fields(const BuiltGraph& built, const std::string& kind, const std:
 template <class Options, class Function, class... Inputs>
 void bind_stage(nb::module_& module, const char* name, Function* function, const Inputs&... inputs) {
   publish_options<Options>(module, name);
-  module.def(name, function, nb::arg("graph"), inputs..., nb::arg("options"), nb::arg("threads"),
+  module.def(name, function, nb::arg("graph"), inputs..., nb::arg("options"), nb::arg("threads").none(),
              nb::arg("progress").none());
 }
 
@@ -140,13 +142,13 @@ void bind_features(nb::module_& module) {
   bind_stage<ShapeIndexOptions>(module, "compute_shape_index", &shape_index, field("k1"), field("k2"),
                                 nb::arg("sigma"));
   bind_stage<SurfaceVariationOptions>(module, "compute_surface_variation", &surface_variation);
-  module.def("estimate_noise", &noise, nb::arg("graph"), nb::arg("threads"), nb::arg("progress").none());
+  module.def("estimate_noise", &noise, nb::arg("graph"), nb::arg("threads").none(), nb::arg("progress").none());
   bind_stage<NonLocalMeansOptions>(module, "non_local_means", &denoise, field("field"), field("direction1"));
   bind_stage<TaubinSmoothingOptions>(module, "smooth_positions", &smooth);
   bind_stage<RetinexOptions>(module, "decompose_retinex", &retinex, field("field"));
   bind_stage<SegmentationOptions>(module, "segment_field", &segment, field("field"));
   module.def("compute_fields", &all_fields, nb::arg("graph"), nb::arg("kind"), nb::arg("preset"), nb::arg("options"),
-             nb::arg("threads"), nb::arg("progress").none());
+             nb::arg("threads").none(), nb::arg("progress").none());
 }
 
 }  // namespace shapelight::python

@@ -122,11 +122,11 @@ template <class Build>
 void bind_builder(nb::module_& module, const char* name, Build build) {
   module.def(
       name,
-      [build](const InputView& input, const nb::dict& given, int threads, nb::object progress) {
+      [build](const InputView& input, const nb::dict& given, nb::object threads, nb::object progress) {
         const auto options = make_options<GraphOptions>(given);
         return run({threads, progress}, [&](const RunContext& context) { return build(input, options, context); });
       },
-      nb::arg("input"), nb::arg("options"), nb::arg("threads"), nb::arg("progress").none());
+      nb::arg("input"), nb::arg("options"), nb::arg("threads").none(), nb::arg("progress").none());
 }
 
 }  // namespace

@@ -90,22 +90,23 @@ void bind_io(nb::module_& module) {
   module.def(
       "read_geometry",
       [](const std::string& path, const std::optional<std::array<double, 4>>& intrinsics, double depth_scale,
-         int threads, nb::object progress) {
+         nb::object threads, nb::object progress) {
         return to_dict(run({threads, progress}, [&](const RunContext& context) {
           return read_geometry(path, read_options(intrinsics, depth_scale), context);
         }));
       },
-      nb::arg("path"), nb::arg("intrinsics").none(), nb::arg("depth_scale"), nb::arg("threads"),
+      nb::arg("path"), nb::arg("intrinsics").none(), nb::arg("depth_scale"), nb::arg("threads").none(),
       nb::arg("progress").none());
   module.def(
       "write_geometry",
-      [](const std::string& path, const InputView& view, bool ascii, bool overwrite, int threads, nb::object progress) {
+      [](const std::string& path, const InputView& view, bool ascii, bool overwrite, nb::object threads,
+         nb::object progress) {
         const Geometry geometry = view.geometry();
         return run({threads, progress}, [&](const RunContext& context) {
           return write_geometry(path, geometry, {.ascii = ascii, .overwrite = overwrite}, context);
         });
       },
-      nb::arg("path"), nb::arg("geometry"), nb::arg("ascii"), nb::arg("overwrite"), nb::arg("threads"),
+      nb::arg("path"), nb::arg("geometry"), nb::arg("ascii"), nb::arg("overwrite"), nb::arg("threads").none(),
       nb::arg("progress").none());
   module.def("supported_formats", [] {
     nb::list formats;

@@ -22,7 +22,7 @@ bool chooses_curvature(const nb::dict& given) {
 }
 
 nb::dict sample_job(const InputView& input, std::optional<std::uint64_t> count, std::optional<double> ratio,
-                    std::optional<double> spacing, const std::string& preset, const nb::dict& given, int threads,
+                    std::optional<double> spacing, const std::string& preset, const nb::dict& given, nb::object threads,
                     nb::object progress) {
   SampleOptions options = sample_preset(enum_named<Preset>("preset", preset));
   apply_options(options, given);
@@ -41,7 +41,7 @@ nb::dict sample_job(const InputView& input, std::optional<std::uint64_t> count, 
   return d;
 }
 
-nb::dict fields_job(const InputView& input, const std::string& preset, const nb::dict& given, int threads,
+nb::dict fields_job(const InputView& input, const std::string& preset, const nb::dict& given, nb::object threads,
                     nb::object progress) {
   FieldsOptions options = fields_preset(enum_named<Preset>("preset", preset));
   apply_options(options, given);
@@ -75,7 +75,7 @@ SimplifyOptions simplify_options(const std::optional<std::string>& preset_name, 
 
 nb::dict simplify_job(const InputView& input, std::optional<std::uint64_t> vertices, std::optional<std::uint64_t> faces,
                       std::optional<double> ratio, std::optional<double> max_error,
-                      const std::optional<std::string>& preset, const nb::dict& given, int threads,
+                      const std::optional<std::string>& preset, const nb::dict& given, nb::object threads,
                       nb::object progress) {
   const SimplifyOptions options = simplify_options(preset, given);
   const SimplifySize size{.vertices = vertices, .faces = faces, .ratio = ratio, .max_error = max_error};
@@ -96,7 +96,7 @@ nb::dict simplify_job(const InputView& input, std::optional<std::uint64_t> verti
 }
 
 nb::dict metrics_job(const InputView& reference, const InputView& test, bool wants_distances, const nb::dict& given,
-                     int threads, nb::object progress) {
+                     nb::object threads, nb::object progress) {
   const auto options = make_options<SurfaceDistanceOptions>(given);
   std::vector<double> distances;
   const MeasureResult result = run({threads, progress}, [&](const RunContext& context) {
@@ -154,18 +154,18 @@ nb::dict to_dict(const SamplingQuality& q) {
 void bind_jobs(nb::module_& module) {
   publish_options<SampleOptions>(module, "sample");
   module.def("sample", &sample_job, nb::arg("input"), nb::arg("count").none(), nb::arg("ratio").none(),
-             nb::arg("spacing").none(), nb::arg("preset"), nb::arg("options"), nb::arg("threads"),
+             nb::arg("spacing").none(), nb::arg("preset"), nb::arg("options"), nb::arg("threads").none(),
              nb::arg("progress").none());
   publish_options<FieldsOptions>(module, "fields");
-  module.def("fields", &fields_job, nb::arg("input"), nb::arg("preset"), nb::arg("options"), nb::arg("threads"),
+  module.def("fields", &fields_job, nb::arg("input"), nb::arg("preset"), nb::arg("options"), nb::arg("threads").none(),
              nb::arg("progress").none());
   publish_options<SimplifyOptions>(module, "simplify");
   module.def("simplify", &simplify_job, nb::arg("input"), nb::arg("vertices").none(), nb::arg("faces").none(),
              nb::arg("ratio").none(), nb::arg("max_error").none(), nb::arg("preset").none(), nb::arg("options"),
-             nb::arg("threads"), nb::arg("progress").none());
+             nb::arg("threads").none(), nb::arg("progress").none());
   publish_options<SurfaceDistanceOptions>(module, "metrics");
   module.def("metrics", &metrics_job, nb::arg("reference"), nb::arg("test"), nb::arg("distances"), nb::arg("options"),
-             nb::arg("threads"), nb::arg("progress").none());
+             nb::arg("threads").none(), nb::arg("progress").none());
 }
 
 }  // namespace shapelight::python

@@ -14,19 +14,19 @@ namespace shapelight::python {
 namespace {
 
 nb::dict sampling(const PointsArray& reference, const PointsArray& samples,
-                  const std::optional<VectorArray<double>>& importance, int threads, nb::object progress) {
+                  const std::optional<VectorArray<double>>& importance, nb::object threads, nb::object progress) {
   return to_dict(run({threads, progress}, [&](const RunContext& context) {
     return measure_sampling(as_span(reference), importance ? as_span(*importance) : std::span<const double>{},
                             as_span(samples), context);
   }));
 }
 
-nb::object variation(const PointsArray& points, std::size_t k, int threads, nb::object progress) {
+nb::object variation(const PointsArray& points, std::size_t k, nb::object threads, nb::object progress) {
   return to_numpy(run({threads, progress},
                       [&](const RunContext& context) { return surface_variation_knn(as_span(points), k, context); }));
 }
 
-nb::dict surface_distance(const InputView& reference, const InputView& test, const nb::dict& given, int threads,
+nb::dict surface_distance(const InputView& reference, const InputView& test, const nb::dict& given, nb::object threads,
                           nb::object progress) {
   const auto options = make_options<SurfaceDistanceOptions>(given);
   return to_dict(run({threads, progress}, [&](const RunContext& context) {
@@ -34,7 +34,7 @@ nb::dict surface_distance(const InputView& reference, const InputView& test, con
   }));
 }
 
-nb::object distances(const InputView& mesh, const TriangleTree& surface, int threads, nb::object progress) {
+nb::object distances(const InputView& mesh, const TriangleTree& surface, nb::object threads, nb::object progress) {
   return to_numpy(run({threads, progress},
                       [&](const RunContext& context) { return vertex_distances(mesh.mesh(), surface, context); }));
 }
@@ -43,13 +43,13 @@ nb::object distances(const InputView& mesh, const TriangleTree& surface, int thr
 
 void bind_metrics(nb::module_& module) {
   module.def("measure_sampling", &sampling, nb::arg("reference").noconvert(), nb::arg("samples").noconvert(),
-             nb::arg("importance").noconvert().none(), nb::arg("threads"), nb::arg("progress").none());
-  module.def("surface_variation_knn", &variation, nb::arg("points").noconvert(), nb::arg("k"), nb::arg("threads"),
-             nb::arg("progress").none());
+             nb::arg("importance").noconvert().none(), nb::arg("threads").none(), nb::arg("progress").none());
+  module.def("surface_variation_knn", &variation, nb::arg("points").noconvert(), nb::arg("k"),
+             nb::arg("threads").none(), nb::arg("progress").none());
   publish_options<SurfaceDistanceOptions>(module, "measure_surface_distance");
   module.def("measure_surface_distance", &surface_distance, nb::arg("reference"), nb::arg("test"), nb::arg("options"),
-             nb::arg("threads"), nb::arg("progress").none());
-  module.def("vertex_distances", &distances, nb::arg("mesh"), nb::arg("surface"), nb::arg("threads"),
+             nb::arg("threads").none(), nb::arg("progress").none());
+  module.def("vertex_distances", &distances, nb::arg("mesh"), nb::arg("surface"), nb::arg("threads").none(),
              nb::arg("progress").none());
 }
 

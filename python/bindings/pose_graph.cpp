@@ -57,7 +57,7 @@ nb::dict edge_dict(const PoseGraphEdgeResult& edge) {
   return d;
 }
 
-nb::dict pose_graph_job(std::size_t num_scans, const nb::list& edges, const nb::dict& given, int threads,
+nb::dict pose_graph_job(std::size_t num_scans, const nb::list& edges, const nb::dict& given, nb::object threads,
                         nb::object progress) {
   const auto options = make_options<PoseGraphOptions>(given);
   std::vector<PoseGraphEdge> measured;
@@ -94,7 +94,7 @@ nb::dict fit_job(const Clouds& target, const Clouds& source, const PoseArray& T_
 }
 
 nb::dict refine_job(const std::vector<Clouds>& scans, const std::vector<std::pair<std::size_t, std::size_t>>& pairs,
-                    const Poses& T_world_scan, const nb::dict& given, int threads, nb::object progress) {
+                    const Poses& T_world_scan, const nb::dict& given, nb::object threads, nb::object progress) {
   const auto options = make_options<JointRefinementOptions>(given);
   std::vector<ScanView> views;
   for (const auto& [full, samples] : scans) views.push_back({full, samples});
@@ -114,7 +114,7 @@ nb::dict refine_job(const std::vector<Clouds>& scans, const std::vector<std::pai
 void bind_pose_graph(nb::module_& module) {
   publish_options<PoseGraphOptions>(module, "optimize_pose_graph");
   module.def("optimize_pose_graph", &pose_graph_job, nb::arg("num_scans"), nb::arg("edges"), nb::arg("options"),
-             nb::arg("threads"), nb::arg("progress").none());
+             nb::arg("threads").none(), nb::arg("progress").none());
   module.def(
       "measure_disagreement",
       [](const nb::dict& edge, const Poses& T_world_scan) {
@@ -125,7 +125,7 @@ void bind_pose_graph(nb::module_& module) {
   module.def("measure_fit", &fit_job, nb::arg("target"), nb::arg("source"), nb::arg("T_target_source"),
              nb::arg("options"));
   module.def("refine_jointly", &refine_job, nb::arg("scans"), nb::arg("pairs"), nb::arg("T_world_scan"),
-             nb::arg("options"), nb::arg("threads"), nb::arg("progress").none());
+             nb::arg("options"), nb::arg("threads").none(), nb::arg("progress").none());
 }
 
 }  // namespace shapelight::python

@@ -33,7 +33,7 @@ auto points_of(Member member) {
 }
 
 void make_cloud(RegistrationCloud* self, const PointsArray& positions, const std::optional<PointsArray>& normals,
-                const std::optional<std::array<double, 3>>& viewpoint, int threads, nb::object progress) {
+                const std::optional<std::array<double, 3>>& viewpoint, nb::object threads, nb::object progress) {
   std::vector<Vec3> points = copy_of(positions), directions = copy_of(normals);
   new (self) RegistrationCloud(run({threads, progress}, [&](const RunContext& context) {
     return RegistrationCloud(std::move(points), std::move(directions), context);
@@ -44,7 +44,7 @@ void make_cloud(RegistrationCloud* self, const PointsArray& positions, const std
 void bind_clouds(nb::module_& module) {
   nb::class_<RegistrationCloud>(module, "RegistrationCloud", "What registration sees of one scan.")
       .def("__init__", &make_cloud, nb::arg("positions"), nb::arg("normals").none(), nb::arg("viewpoint").none(),
-           nb::arg("threads"), nb::arg("progress").none())
+           nb::arg("threads").none(), nb::arg("progress").none())
       .def("__len__", &RegistrationCloud::size)
       .def_prop_ro("position", points_of<RegistrationCloud>(&RegistrationCloud::position))
       .def_prop_ro("normal", points_of<RegistrationCloud>(&RegistrationCloud::normal))
@@ -60,7 +60,7 @@ void bind_clouds(nb::module_& module) {
       .def_prop_ro("keypoints", [](const PreparedScan& scan) { return to_numpy(std::vector<Index>(scan.keypoints)); });
 }
 
-PreparedScan prepare_job(const InputView& input, const std::string& name, const nb::dict& given, int threads,
+PreparedScan prepare_job(const InputView& input, const std::string& name, const nb::dict& given, nb::object threads,
                          nb::object progress) {
   const auto options = make_options<RegisterOptions>(given);
   return run({threads, progress},
@@ -68,7 +68,7 @@ PreparedScan prepare_job(const InputView& input, const std::string& name, const 
 }
 
 nb::dict register_job(const PreparedScan& source, const PreparedScan& target, const std::optional<PoseArray>& init,
-                      const nb::dict& given, int threads, nb::object progress) {
+                      const nb::dict& given, nb::object threads, nb::object progress) {
   const auto options = make_options<RegisterOptions>(given);
   std::optional<RigidTransform> start;
   if (init) start = to_transform(*init);
@@ -85,18 +85,18 @@ void bind_method(nb::module_& module, const char* name, Method method) {
   module.def(
       name,
       [method](const RegistrationCloud& source, const RegistrationCloud& target, const PoseArray& T_target_source,
-               const nb::dict& given, int threads, nb::object progress) {
+               const nb::dict& given, nb::object threads, nb::object progress) {
         const auto options = make_options<Options>(given);
         const RigidTransform start = to_transform(T_target_source);
         return to_dict(run({threads, progress},
                            [&](const RunContext& context) { return method(source, target, start, options, context); }));
       },
-      nb::arg("source"), nb::arg("target"), nb::arg("T_target_source"), nb::arg("options"), nb::arg("threads"),
+      nb::arg("source"), nb::arg("target"), nb::arg("T_target_source"), nb::arg("options"), nb::arg("threads").none(),
       nb::arg("progress").none());
 }
 
-nb::dict describe_job(const RegistrationCloud& cloud, const VectorArray<Index>& keypoints, double spacing, int threads,
-                      nb::object progress) {
+nb::dict describe_job(const RegistrationCloud& cloud, const VectorArray<Index>& keypoints, double spacing,
+                      nb::object threads, nb::object progress) {
   DescribedPoints points = run({threads, progress}, [&](const RunContext& context) {
     return describe_points(cloud, as_span(keypoints), spacing, context);
   });
@@ -130,7 +130,7 @@ DescribedPoints to_described(const char* name, const nb::dict& d) {
   return points;
 }
 
-nb::list align_job(const nb::dict& source, const nb::dict& target, const nb::dict& given, int threads,
+nb::list align_job(const nb::dict& source, const nb::dict& target, const nb::dict& given, nb::object threads,
                    nb::object progress) {
   const auto options = make_options<CoarseAlignmentOptions>(given);
   const DescribedPoints moving = to_described("source", source), fixed = to_described("target", target);
@@ -142,7 +142,7 @@ nb::list align_job(const nb::dict& source, const nb::dict& target, const nb::dic
 }
 
 nb::dict assess_job(const RegistrationCloud& source, const RegistrationCloud& target, const PoseArray& T_target_source,
-                    const VectorArray<double>& rivals, int threads, nb::object progress) {
+                    const VectorArray<double>& rivals, nb::object threads, nb::object progress) {
   const RigidTransform pose = to_transform(T_target_source);
   return to_dict(run({threads, progress}, [&](const RunContext& context) {
     return assess_pose(source, target, pose, as_span(rivals), context);
@@ -153,21 +153,21 @@ nb::dict assess_job(const RegistrationCloud& source, const RegistrationCloud& ta
 
 void bind_registration(nb::module_& module) {
   bind_clouds(module);
-  module.def("prepare_scan", &prepare_job, nb::arg("scan"), nb::arg("name"), nb::arg("options"), nb::arg("threads"),
-             nb::arg("progress").none());
+  module.def("prepare_scan", &prepare_job, nb::arg("scan"), nb::arg("name"), nb::arg("options"),
+             nb::arg("threads").none(), nb::arg("progress").none());
   module.def("register_prepared", &register_job, nb::arg("source"), nb::arg("target"), nb::arg("init").none(),
-             nb::arg("options"), nb::arg("threads"), nb::arg("progress").none());
+             nb::arg("options"), nb::arg("threads").none(), nb::arg("progress").none());
   bind_method<IcpOptions>(module, "register_by_icp", &register_by_icp);
   bind_method<FicpOptions>(module, "register_by_ficp", &register_by_ficp);
   bind_method<SoftIcpOptions>(module, "register_by_soft_icp", &register_by_soft_icp);
   module.def("coarse_spacing", &coarse_spacing, nb::arg("cloud"));
   module.def("describe_points", &describe_job, nb::arg("cloud"), nb::arg("keypoints"), nb::arg("spacing"),
-             nb::arg("threads"), nb::arg("progress").none());
+             nb::arg("threads").none(), nb::arg("progress").none());
   publish_options<CoarseAlignmentOptions>(module, "align_coarsely");
-  module.def("align_coarsely", &align_job, nb::arg("source"), nb::arg("target"), nb::arg("options"), nb::arg("threads"),
-             nb::arg("progress").none());
+  module.def("align_coarsely", &align_job, nb::arg("source"), nb::arg("target"), nb::arg("options"),
+             nb::arg("threads").none(), nb::arg("progress").none());
   module.def("assess_pose", &assess_job, nb::arg("source"), nb::arg("target"), nb::arg("T_target_source"),
-             nb::arg("rivals"), nb::arg("threads"), nb::arg("progress").none());
+             nb::arg("rivals"), nb::arg("threads").none(), nb::arg("progress").none());
 }
 
 }  // namespace shapelight::python

@@ -62,7 +62,7 @@ struct Subject {
 };
 
 nb::object render_job(const nb::list& inputs, const nb::list& dots, const nb::dict& style, const nb::dict& given,
-                      int threads, nb::object progress) {
+                      nb::object threads, nb::object progress) {
   RenderOptions options = make_options<RenderOptions>(given);
   options.view = nb::cast<std::string>(style["view"]);
   Subject subject;
@@ -157,7 +157,7 @@ void bind_colors(nb::module_& module) {
 void bind_render(nb::module_& module) {
   publish_options<RenderOptions>(module, "render");
   module.def("render", &render_job, nb::arg("inputs"), nb::arg("dots"), nb::arg("style"), nb::arg("options"),
-             nb::arg("threads"), nb::arg("progress").none(),
+             nb::arg("threads").none(), nb::arg("progress").none(),
              "inputs: [(name, GeometryView)], dots: [(name, points)], style: colors, titles, view, sizes, captions.");
   module.def(
       "write_png",

@@ -1,5 +1,6 @@
 #include "run.hpp"
 
+#include <fmt/format.h>
 #include <nanobind/stl/string.h>
 
 #include <chrono>
@@ -13,6 +14,7 @@
 #include <vector>
 
 #include "bindings.hpp"
+#include "shapelight/core/error.hpp"
 
 namespace shapelight::python {
 namespace {
@@ -133,12 +135,18 @@ double attend(Exchange& exchange, std::stop_source& stop, const nb::object& call
   return reached;
 }
 
+int thread_count(const nb::object& threads) {
+  int count = 0;
+  if (nb::try_cast<int>(threads, count) && count >= 0) return count;
+  throw InvalidInput(fmt::format("threads: {}, expected a whole number, 0 for all cores", nb::repr(threads).c_str()));
+}
+
 }  // namespace
 
 void run_interruptibly(const CallStyle& style, const std::function<void(const RunContext&)>& work) {
   Exchange exchange;
   std::stop_source stop;
-  RunContext context{.max_threads = style.threads, .stop = stop.get_token(), .progress = {}};
+  RunContext context{.max_threads = thread_count(style.threads), .stop = stop.get_token(), .progress = {}};
   if (!style.progress.is_none()) {
     context.progress = [&exchange](double fraction, std::string_view phase) {
       const std::lock_guard lock(exchange.mutex);

@@ -13,7 +13,7 @@ namespace nb = nanobind;
 
 /// How a Python caller wants a long call to run.
 struct CallStyle {
-  int threads = 0;                   ///< 0: all cores
+  nb::object threads = nb::int_(0);  ///< 0: all cores
   nb::object progress = nb::none();  ///< None, or a callable that takes (fraction, phase)
 };
 

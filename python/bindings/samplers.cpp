@@ -48,13 +48,13 @@ void bind_sampler(nb::module_& module, const char* name, Choose choose, const au
   module.def(
       name,
       [choose](const BuiltGraph& built, Inputs... inputs, std::size_t count, double spacing,
-               const std::optional<VectorArray<Index>>& candidates, const nb::dict& given, int threads,
+               const std::optional<VectorArray<Index>>& candidates, const nb::dict& given, nb::object threads,
                nb::object progress) {
         const Request request(built.graph, count, spacing, candidates);
         return to_numpy(choose(built.graph, request, inputs..., given, CallStyle{threads, progress}));
       },
       nb::arg("graph"), arguments..., nb::arg("count"), nb::arg("spacing"), nb::arg("candidates").noconvert().none(),
-      nb::arg("options"), nb::arg("threads"), nb::arg("progress").none());
+      nb::arg("options"), nb::arg("threads").none(), nb::arg("progress").none());
 }
 
 // Samplers that look at the graph alone.
@@ -72,7 +72,7 @@ void bind_plain_sampler(nb::module_& module, const char* name) {
 
 nb::object density(const BuiltGraph& built, const VectorArray<double>& curvedness,
                    const VectorArray<double>& surface_variation, const OptionalField& shape_index,
-                   const OptionalField& reflectance, bool noisy, int threads, nb::object progress) {
+                   const OptionalField& reflectance, bool noisy, nb::object threads, nb::object progress) {
   const ShapeFields fields{shapelight::python::as_span(curvedness), shapelight::python::as_span(surface_variation),
                            as_span(shape_index), as_span(reflectance), noisy};
   return to_numpy(run({threads, progress},
@@ -121,7 +121,7 @@ void bind_samplers(nb::module_& module) {
   bind_sampler<const VectorArray<double>&, const VectorArray<std::uint32_t>&>(module, "sample_paper", &by_paper,
                                                                               field("shape_index"), field("segment"));
   module.def("sampling_density", &density, nb::arg("graph"), field("curvedness"), field("surface_variation"),
-             field("shape_index").none(), field("reflectance").none(), nb::arg("noisy"), nb::arg("threads"),
+             field("shape_index").none(), field("reflectance").none(), nb::arg("noisy"), nb::arg("threads").none(),
              nb::arg("progress").none());
 }
 

@@ -20,7 +20,7 @@ nb::object matrix_to_numpy(const Matrix6& matrix) {
 }
 
 nb::dict register_job(const InputView& source, const InputView& target, const std::optional<PoseArray>& init,
-                      const nb::dict& given, int threads, nb::object progress) {
+                      const nb::dict& given, nb::object threads, nb::object progress) {
   const auto options = make_options<RegisterOptions>(given);
   std::optional<RigidTransform> start;
   if (init) start = to_transform(*init);
@@ -54,8 +54,8 @@ nb::dict scan_dict(const AlignedScan& scan) {
   return d;
 }
 
-nb::dict align_job(const std::vector<const InputView*>& inputs, bool wants_merged, const nb::dict& given, int threads,
-                   nb::object progress) {
+nb::dict align_job(const std::vector<const InputView*>& inputs, bool wants_merged, const nb::dict& given,
+                   nb::object threads, nb::object progress) {
   const auto options = make_options<AlignOptions>(given);
   std::vector<GeometryView> views;
   for (const InputView* input : inputs) views.push_back(input->view);
@@ -133,10 +133,10 @@ nb::dict to_dict(const RegisterResult& result) {
 void bind_scan_jobs(nb::module_& module) {
   publish_options<RegisterOptions>(module, "register");
   module.def("register_scans", &register_job, nb::arg("source"), nb::arg("target"), nb::arg("init").none(),
-             nb::arg("options"), nb::arg("threads"), nb::arg("progress").none());
+             nb::arg("options"), nb::arg("threads").none(), nb::arg("progress").none());
   publish_options<AlignOptions>(module, "align");
-  module.def("align_scans", &align_job, nb::arg("scans"), nb::arg("merged"), nb::arg("options"), nb::arg("threads"),
-             nb::arg("progress").none());
+  module.def("align_scans", &align_job, nb::arg("scans"), nb::arg("merged"), nb::arg("options"),
+             nb::arg("threads").none(), nb::arg("progress").none());
 }
 
 }  // namespace shapelight::python

@@ -46,7 +46,7 @@ nb::dict run_simplify(const Request& request, Simplify&& simplify) {
 }
 
 nb::dict qslim(const InputView& input, std::size_t vertices, std::size_t faces, const EdgesArray& features,
-               const nb::dict& given, int threads, nb::object progress) {
+               const nb::dict& given, nb::object threads, nb::object progress) {
   const auto options = make_options<QslimOptions>(given);
   const Request r{to_mesh(input), {vertices, faces}, to_edges(features), {threads, progress}};
   return run_simplify(r, [&](const RunContext& context, MeshOddities* oddities) {
@@ -56,7 +56,7 @@ nb::dict qslim(const InputView& input, std::size_t vertices, std::size_t faces, 
 
 nb::dict ssim(const InputView& input, std::size_t vertices, std::size_t faces, const VectorArray<Index>& samples,
               const std::optional<PointsArray>& denoised, const EdgesArray& features, const nb::dict& given,
-              int threads, nb::object progress) {
+              nb::object threads, nb::object progress) {
   const auto options = make_options<SsimOptions>(given);
   SsimGuide guide{.samples = as_span(samples), .denoised = {}};
   if (denoised) guide.denoised = as_span(*denoised);
@@ -67,7 +67,7 @@ nb::dict ssim(const InputView& input, std::size_t vertices, std::size_t faces, c
 }
 
 nb::dict ssim_paper(const InputView& input, std::size_t vertices, std::size_t faces, const VectorArray<Index>& samples,
-                    const EdgesArray& features, int threads, nb::object progress) {
+                    const EdgesArray& features, nb::object threads, nb::object progress) {
   const Request r{to_mesh(input), {vertices, faces}, to_edges(features), {threads, progress}};
   return run_simplify(r, [&](const RunContext& context, MeshOddities* oddities) {
     return simplify_ssim_paper(r.mesh, r.target, as_span(samples), r.features, context, oddities);
@@ -79,13 +79,13 @@ nb::dict ssim_paper(const InputView& input, std::size_t vertices, std::size_t fa
 void bind_simplify(nb::module_& module) {
   publish_options<QslimOptions>(module, "simplify_qslim");
   module.def("simplify_qslim", &qslim, nb::arg("mesh"), nb::arg("vertices"), nb::arg("faces"), nb::arg("features"),
-             nb::arg("options"), nb::arg("threads"), nb::arg("progress").none());
+             nb::arg("options"), nb::arg("threads").none(), nb::arg("progress").none());
   publish_options<SsimOptions>(module, "simplify_ssim");
   module.def("simplify_ssim", &ssim, nb::arg("mesh"), nb::arg("vertices"), nb::arg("faces"), nb::arg("samples"),
-             nb::arg("denoised").none(), nb::arg("features"), nb::arg("options"), nb::arg("threads"),
+             nb::arg("denoised").none(), nb::arg("features"), nb::arg("options"), nb::arg("threads").none(),
              nb::arg("progress").none());
   module.def("simplify_ssim_paper", &ssim_paper, nb::arg("mesh"), nb::arg("vertices"), nb::arg("faces"),
-             nb::arg("samples"), nb::arg("features"), nb::arg("threads"), nb::arg("progress").none());
+             nb::arg("samples"), nb::arg("features"), nb::arg("threads").none(), nb::arg("progress").none());
 }
 
 }  // namespace shapelight::python

@@ -45,7 +45,7 @@ void bind_kd_tree(nb::module_& module) {
       .def("__len__", &KdTree::size)
       .def(
           "nearest",
-          [](const KdTree& tree, const PointsArray& queries, std::size_t k, double radius, int threads,
+          [](const KdTree& tree, const PointsArray& queries, std::size_t k, double radius, nb::object threads,
              nb::object progress) {
             const std::vector<Neighbor> found = run({threads, progress}, [&](const RunContext& context) {
               return nearest(tree, as_span(queries), k, radius, context);
@@ -53,11 +53,11 @@ void bind_kd_tree(nb::module_& module) {
             const std::size_t n = queries.shape(0);
             return nb::make_tuple(distances_of(found, {n, k}), indices_of(found, {n, k}));
           },
-          nb::arg("queries").noconvert(), nb::arg("k"), nb::arg("radius"), nb::arg("threads"),
+          nb::arg("queries").noconvert(), nb::arg("k"), nb::arg("radius"), nb::arg("threads").none(),
           nb::arg("progress").none())
       .def(
           "within",
-          [](const KdTree& tree, const PointsArray& queries, double radius, int threads, nb::object progress) {
+          [](const KdTree& tree, const PointsArray& queries, double radius, nb::object threads, nb::object progress) {
             NeighborLists lists = run({threads, progress}, [&](const RunContext& context) {
               return within(tree, as_span(queries), radius, context);
             });
@@ -65,18 +65,18 @@ void bind_kd_tree(nb::module_& module) {
             return nb::make_tuple(own_as_numpy<std::int64_t>(std::move(lists.offsets), {queries.shape(0) + 1}),
                                   indices_of(lists.found, {m}), distances_of(lists.found, {m}));
           },
-          nb::arg("queries").noconvert(), nb::arg("radius"), nb::arg("threads"), nb::arg("progress").none())
+          nb::arg("queries").noconvert(), nb::arg("radius"), nb::arg("threads").none(), nb::arg("progress").none())
       .def(
           "all_nearest",
-          [](const KdTree& tree, std::size_t k, int threads, nb::object progress) {
+          [](const KdTree& tree, std::size_t k, nb::object threads, nb::object progress) {
             std::vector<Index> table =
                 run({threads, progress}, [&](const RunContext& context) { return tree.all_nearest(k, context); });
             return own_as_numpy<Index>(std::move(table), {tree.size(), k});
           },
-          nb::arg("k"), nb::arg("threads"), nb::arg("progress").none());
+          nb::arg("k"), nb::arg("threads").none(), nb::arg("progress").none());
 }
 
-nb::tuple closest(const TriangleTree& tree, const PointsArray& queries, int threads, nb::object progress) {
+nb::tuple closest(const TriangleTree& tree, const PointsArray& queries, nb::object threads, nb::object progress) {
   const std::vector<TriangleTree::Hit> hits =
       run({threads, progress}, [&](const RunContext& context) { return tree.closest(as_span(queries), context); });
   std::vector<Index> triangles;
@@ -90,8 +90,8 @@ nb::tuple closest(const TriangleTree& tree, const PointsArray& queries, int thre
   return nb::make_tuple(distances_of(hits, {hits.size()}), to_numpy(std::move(triangles)), to_numpy(std::move(points)));
 }
 
-nb::tuple first_hit(const TriangleTree& tree, const PointsArray& origins, const PointsArray& directions, int threads,
-                    nb::object progress) {
+nb::tuple first_hit(const TriangleTree& tree, const PointsArray& origins, const PointsArray& directions,
+                    nb::object threads, nb::object progress) {
   const std::vector<TriangleTree::RayHit> hits = run({threads, progress}, [&](const RunContext& context) {
     return first_hits(tree, as_span(origins), as_span(directions), context);
   });
@@ -124,7 +124,7 @@ void bind_spatial(nb::module_& module) {
   bind_kd_tree(module);
   module.def(
       "make_triangle_tree",
-      [](const InputView& mesh, int threads, nb::object progress) {
+      [](const InputView& mesh, nb::object threads, nb::object progress) {
         return run({threads, progress}, [&](const RunContext& context) {
           const MeshView view = mesh.mesh();
           return TriangleTree(
@@ -132,12 +132,12 @@ void bind_spatial(nb::module_& module) {
               context);
         });
       },
-      nb::arg("mesh"), nb::arg("threads"), nb::arg("progress").none());
+      nb::arg("mesh"), nb::arg("threads").none(), nb::arg("progress").none());
   nb::class_<TriangleTree>(module, "TriangleTree")
       .def("__len__", &TriangleTree::size)
-      .def("closest", &closest, nb::arg("queries").noconvert(), nb::arg("threads"), nb::arg("progress").none())
+      .def("closest", &closest, nb::arg("queries").noconvert(), nb::arg("threads").none(), nb::arg("progress").none())
       .def("first_hit", &first_hit, nb::arg("origins").noconvert(), nb::arg("directions").noconvert(),
-           nb::arg("threads"), nb::arg("progress").none());
+           nb::arg("threads").none(), nb::arg("progress").none());
   module.def("closest_point_on_triangle", &closest_on_triangles, nb::arg("queries").noconvert(),
              nb::arg("a").noconvert(), nb::arg("b").noconvert(), nb::arg("c").noconvert());
 }

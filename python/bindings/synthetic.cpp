@@ -35,7 +35,7 @@ TriangleTree tree_of(const InputView& surface, const RunContext& context) {
 }
 
 nb::dict scan_job(const InputView& surface, const PoseArray& T_mesh_camera, double field_of_view, const nb::dict& given,
-                  int threads, nb::object progress) {
+                  nb::object threads, nb::object progress) {
   const auto options = make_options<VirtualScanOptions>(given);
   const VirtualCamera camera{to_transform(T_mesh_camera), field_of_view};
   return scan_dict(run({threads, progress}, [&](const RunContext& context) {
@@ -44,8 +44,8 @@ nb::dict scan_job(const InputView& surface, const PoseArray& T_mesh_camera, doub
   }));
 }
 
-nb::dict pair_job(const InputView& surface, const Triple& center, double radius, const nb::dict& given, int threads,
-                  nb::object progress) {
+nb::dict pair_job(const InputView& surface, const Triple& center, double radius, const nb::dict& given,
+                  nb::object threads, nb::object progress) {
   const auto options = make_options<ScanPairOptions>(given);
   ScanPair pair = run({threads, progress}, [&](const RunContext& context) {
     const TriangleTree tree = tree_of(surface, context.phase(0.0, 0.1, "index the surface"));
@@ -60,8 +60,8 @@ nb::dict pair_job(const InputView& surface, const Triple& center, double radius,
   return d;
 }
 
-double overlap_job(const InputView& source, const InputView& target, const PoseArray& T_target_source, int threads,
-                   nb::object progress) {
+double overlap_job(const InputView& source, const InputView& target, const PoseArray& T_target_source,
+                   nb::object threads, nb::object progress) {
   const Geometry moving = source.geometry(), fixed = target.geometry();
   const RigidTransform pose = to_transform(T_target_source);
   return run({threads, progress},
@@ -81,12 +81,12 @@ nb::list ring(const Triple& center, double radius, int count, double azimuth, do
 void bind_synthetic(nb::module_& module) {
   publish_options<VirtualScanOptions>(module, "virtual_scan");
   module.def("virtual_scan", &scan_job, nb::arg("surface"), nb::arg("T_mesh_camera"), nb::arg("field_of_view"),
-             nb::arg("options"), nb::arg("threads"), nb::arg("progress").none());
+             nb::arg("options"), nb::arg("threads").none(), nb::arg("progress").none());
   publish_options<ScanPairOptions>(module, "scan_pair");
   module.def("scan_pair", &pair_job, nb::arg("surface"), nb::arg("center"), nb::arg("radius"), nb::arg("options"),
-             nb::arg("threads"), nb::arg("progress").none());
+             nb::arg("threads").none(), nb::arg("progress").none());
   module.def("scan_overlap", &overlap_job, nb::arg("source"), nb::arg("target"), nb::arg("T_target_source"),
-             nb::arg("threads"), nb::arg("progress").none());
+             nb::arg("threads").none(), nb::arg("progress").none());
   module.def(
       "bounding_sphere",
       [](const PointsArray& positions) {

@@ -88,3 +88,7 @@ __all__ = [
 ]
 
 register_extras()
+
+
+def __dir__() -> "list[str]":
+    return __all__

@@ -35,7 +35,15 @@ def described(table: str) -> Callable[[F], F]:
                     close = difflib.get_close_matches(name, known, 1)
                     hint = f", did you mean '{close[0]}'?" if close else ""
                     raise TypeError(f"{function.__name__}() got an unexpected keyword argument '{name}'{hint}")
-            return function(*args, **kwargs)
+            try:
+                return function(*args, **kwargs)
+            except TypeError as error:
+                if "incompatible function arguments" not in str(error):
+                    raise
+                given = [*(type(a).__name__ for a in args), *(f"{k}: {type(v).__name__}" for k, v in kwargs.items())]
+                raise TypeError(
+                    f"{function.__name__}({', '.join(given)}): a type that it does not take, see help()"
+                ) from None
 
         checked.__signature__ = signature.replace(parameters=own + keywords)  # type: ignore[attr-defined]
         checked.__doc__ = inspect.cleandoc(function.__doc__ or "") + "\n\nOptions\n" + _options_text(rows)

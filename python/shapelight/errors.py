@@ -4,6 +4,7 @@ Every class has `code`, the exit code of the command line for the same cause, an
 that Python programmers catch for it.
 """
 
+import re
 from typing import Any
 
 
@@ -61,3 +62,18 @@ class Cancelled(Error):
     """A reader or writer was asked to stop."""
 
     code = 130
+
+
+_FLAG = re.compile(r"(?<![^ (])--(no-)?([a-z][a-z_-]*)(?=[ :;,)]|$)")
+
+
+def in_keywords(message: str) -> str:
+    """A message of the library with keyword arguments in place of the command's flags."""
+
+    def keyword(flag: "re.Match[str]") -> str:
+        name = flag[2].replace("-", "_")
+        if name == "force":
+            return "overwrite=True"
+        return f"{name}=False" if flag[1] else f"{name}_" if name == "lambda" else name
+
+    return _FLAG.sub(keyword, message)

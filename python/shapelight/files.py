@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
+from .arguments import Path, as_file_name, as_floats, as_real, as_whole
 from .errors import FormatError, InvalidInput
 from .geometry import Geometry, as_transform
 from .progress import Progress, as_callable
 
-Path = Union[str, "os.PathLike[str]"]
 
 
 def read(
@@ -31,12 +31,16 @@ def read(
 
     Raises ReadError (missing, unreadable), FormatError (malformed or unsupported; names the place).
     """
-    name = os.fspath(path)
+    name = as_file_name(path)
+    camera = None if intrinsics is None else as_floats(intrinsics, "intrinsics")
+    if camera is not None and camera.shape != (4,):
+        raise InvalidInput(f"intrinsics: shape {camera.shape}, expected fx, fy, cx, cy")
+    scale = as_real(depth_scale, "depth_scale")
     reader = _readers.get(os.path.splitext(name)[1].lower())
     with as_callable(progress) as report:
         if reader is not None:
             return _read_here(reader, name, report)
-        return Geometry(**_core.read_geometry(name, intrinsics, depth_scale, threads, report))
+        return Geometry(**_core.read_geometry(name, None if camera is None else camera.tolist(), scale, threads, report))
 
 
 def iter_chunks(path: Path, size: int = 1_000_000) -> Iterator[Geometry]:
@@ -48,11 +52,9 @@ def iter_chunks(path: Path, size: int = 1_000_000) -> Iterator[Geometry]:
     Raises ImportError when the extra is missing (pip install shapelight[las]), InvalidInput (another format, size),
     ReadError, FormatError.
     """
-    name = os.fspath(path)
+    name, size = as_file_name(path), as_whole(size, "size", 1)
     if not name.lower().endswith((".las", ".laz")):
         raise InvalidInput(f"{name}: only .las and .laz (also .copc.laz) can be read in chunks")
-    if size < 1:
-        raise InvalidInput(f"size: {size}, expected at least 1")
     try:
         from .extras import las
     except ImportError as error:
@@ -78,7 +80,7 @@ def write(
 
     with as_callable(progress) as report:
         view = as_geometry(geometry)._view()
-        return list(_core.write_geometry(os.fspath(path), view, ascii, overwrite, threads, report))
+        return list(_core.write_geometry(as_file_name(path), view, bool(ascii), bool(overwrite), threads, report))
 
 
 def formats() -> List[Dict[str, Any]]:
@@ -146,9 +148,9 @@ def register_format(
 
 def read_transform(path: Path) -> NDArray[np.float64]:
     """(4, 4): a rigid transform from plain text, 4 rows of 4 numbers, source into target."""
-    return np.asarray(_core.read_transform(os.fspath(path)))
+    return np.asarray(_core.read_transform(as_file_name(path)))
 
 
 def write_transform(path: Path, transform: ArrayLike, *, overwrite: bool = False) -> None:
     """Writes a rigid (4, 4) transform with 17 digits, beside its target, then renames. Raises WriteError."""
-    _core.write_transform(os.fspath(path), as_transform(transform), overwrite)
+    _core.write_transform(as_file_name(path), as_transform(transform), bool(overwrite))

@@ -5,12 +5,13 @@ from __future__ import annotations
 import importlib
 import importlib.util
 import os
-from typing import Any, Iterable, Optional, Union
+from typing import Any, Iterable, Optional, Tuple, TypeGuard, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .adapters import adapter_of
+from .arguments import as_array
 from .errors import InvalidInput
 from .files import read
 from .geometry import NO_INDEX, Geometry, as_indices, as_points
@@ -30,17 +31,17 @@ def as_geometry(source: GeometryLike, faces: Optional[ArrayLike] = None) -> Geom
 
     Raises InvalidInput that says what is understood.
     """
-    if isinstance(source, tuple) and len(source) == 2 and faces is None and np.ndim(_array(source[0])) == 2:
+    if faces is None and _is_pair(source):
         source, faces = source
     found = _own_kind(source)
     if found is not None:
         if faces is not None:
             raise InvalidInput(f"faces: only points take them, and {type(source).__name__} is more than points")
         return found
-    array = _array(source)
+    array = _points(source)
     if array.ndim == 3 and faces is None:
         return _organised(array)
-    triangles = np.zeros((0, 3), np.uint32) if faces is None else as_indices(_array(faces), "faces", (-1, 3))
+    triangles = np.zeros((0, 3), np.uint32) if faces is None else as_indices(faces, "faces", (-1, 3))
     return Geometry(as_points(array), triangles, coordinate_type=_coordinate_type(array))
 
 
@@ -52,9 +53,9 @@ def like(source: GeometryLike, geometry: Geometry) -> Any:
     adapter = adapter_of(source)
     if adapter is not None and adapter.to_geometry(source) is not None:
         return adapter.from_geometry(geometry, source)
-    if isinstance(source, tuple) and len(source) == 2 and np.ndim(_array(source[0])) == 2:
+    if _is_pair(source):
         return like(source[0], geometry), geometry.triangles
-    return geometry.positions.astype(_coordinate_type(_array(source)), copy=False)
+    return geometry.positions.astype(_coordinate_type(as_array(source, "points")), copy=False)
 
 
 def like_with(source: GeometryLike, geometry: Geometry, names: Iterable[str]) -> Any:
@@ -86,6 +87,23 @@ def to_laspy(geometry: GeometryLike) -> Any:
     return _made_by("laspy", geometry)
 
 
+def _is_pair(source: Any) -> TypeGuard[Tuple[Any, Any]]:
+    """(vertices, faces)."""
+    return isinstance(source, tuple) and len(source) == 2 and as_array(source[0], "vertices").ndim == 2
+
+
+def _points(source: Any) -> NDArray[Any]:
+    if isinstance(source, list) and len(source) == 2 and all(np.ndim(part) == 2 for part in source):
+        raise InvalidInput("points: a list of two arrays, expected a tuple (vertices, faces)")
+    array = as_array(source, "points")
+    if array.ndim == 0:
+        raise InvalidInput(
+            f"points: {type(source).__name__}, expected (n, 3) or (height, width, 3) numbers, (vertices, faces), a "
+            "path, a Geometry, or a point cloud or mesh of Open3D, trimesh, PyVista or laspy"
+        )
+    return array
+
+
 def _own_kind(source: Any) -> Optional[Geometry]:
     """What is more than an array."""
     if isinstance(source, Geometry):
@@ -108,16 +126,8 @@ def _need(library: str) -> None:
         raise ImportError(f"to_{library}: {library} is not installed: pip install {extra}")
 
 
-def _array(source: Any) -> NDArray[Any]:
-    """Tensors that numpy does not take as they are (gradients, other devices) are asked for a copy that it takes."""
-    for method in ("detach", "cpu", "numpy"):
-        if hasattr(source, method):
-            source = getattr(source, method)()
-    return np.asarray(source)
-
-
 def _coordinate_type(array: NDArray[Any]) -> str:
-    return "float32" if array.dtype == np.float32 else "float64"
+    return "float32" if array.dtype.kind == "f" and array.dtype.itemsize <= 4 else "float64"
 
 
 def _organised(array: NDArray[Any]) -> Geometry:

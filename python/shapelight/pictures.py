@@ -5,12 +5,14 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, List, Optional, Sequence, Tuple, Union
+from typing import TYPE_CHECKING, Any, Iterable, List, Optional, Sequence, Tuple, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
+from .arguments import Path as FileName
+from .arguments import as_array, as_file_name, as_floats, as_real, as_text, as_whole
 from .describe import described
 from .errors import InvalidInput
 from .geometry import as_points
@@ -35,6 +37,12 @@ def _several(things: Any) -> List[Any]:
     """A list of geometries as it is; one geometry, which may be a tuple or a list of points, as a list of one."""
     is_list = isinstance(things, list) and not (things and _is_point(things[0]))
     return list(things) if is_list else [things]
+
+
+def _texts(given: Union[str, Sequence[str]], name: str) -> List[str]:
+    """One or several."""
+    several = [given] if isinstance(given, str) or not isinstance(given, Iterable) else given
+    return [as_text(text, name) for text in several]
 
 
 def _name(thing: Any) -> str:
@@ -71,32 +79,31 @@ def render(
     """
     inputs = [(_name(g), as_geometry(g)._view()) for g in _several(geometries)]
     marks = [(_name(d), as_geometry(d).positions) for d in ([] if dots is None else _several(dots))]
-    colors = [color or "none"] if color is None or isinstance(color, str) else list(color)
     style = {
-        "colors": colors,
-        "titles": [titles] if isinstance(titles, str) else list(titles or ()),
-        "view": view,
-        "point_size": float(point_size),
-        "dot_size": float(dot_size),
-        "captions": captions,
+        "colors": _texts(color or "none", "color"),
+        "titles": _texts(titles or (), "titles"),
+        "view": as_text(view, "view"),
+        "point_size": as_real(point_size, "point_size"),
+        "dot_size": as_real(dot_size, "dot_size"),
+        "captions": bool(captions),
     }
     with as_callable(progress) as report:
         return np.asarray(_core.render(inputs, marks, style, {**options}, threads, report))
 
 
 def _as_picture(image: ArrayLike) -> Picture:
-    array = np.asarray(image)
+    array = as_array(image, "image")
     if array.ndim != 3 or array.shape[2] != 3 or array.dtype != np.uint8:
         raise InvalidInput(f"image: {array.dtype} {array.shape}, expected uint8 (height, width, 3)")
     return np.ascontiguousarray(array)
 
 
-def write_png(path: Union[str, os.PathLike[str]], image: ArrayLike, *, overwrite: bool = False) -> None:
+def write_png(path: FileName, image: ArrayLike, *, overwrite: bool = False) -> None:
     """Writes a (height, width, 3) uint8 picture, beside its target, then renames. The same image gives the same bytes.
 
     Raises WriteError (exists and `overwrite` is off, no space, ...).
     """
-    _core.write_png(os.fspath(path), _as_picture(image), overwrite)
+    _core.write_png(as_file_name(path), _as_picture(image), bool(overwrite))
 
 
 def image_grid(
@@ -107,10 +114,14 @@ def image_grid(
     background: Tuple[int, int, int] = (255, 255, 255),
 ) -> Picture:
     """Places pictures row by row in `columns`, each centred in a cell as large as the largest; `gap` [pixels]."""
-    return np.asarray(_core.image_grid([_as_picture(i) for i in images], columns, gap, background))
+    pictures = [_as_picture(image) for image in images]
+    color = [as_whole(channel, "background") for channel in background]
+    if len(color) != 3 or max(color) > 255:
+        raise InvalidInput(f"background: {color}, expected red, green, blue up to 255")
+    return np.asarray(_core.image_grid(pictures, as_whole(columns, "columns", 1), as_whole(gap, "gap"), color))
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, repr=False, eq=False)
 class View(Result):
     """How one looks at an object."""
 
@@ -124,11 +135,11 @@ class View(Result):
 
 def parse_view(text: str, geometry: GeometryLike) -> View:
     """What `view` of `render` means for a geometry. Raises InvalidInput that lists what is understood."""
-    direction, up, distance = _core.parse_view(text, as_geometry(geometry)._view())
+    direction, up, distance = _core.parse_view(as_text(text, "view"), as_geometry(geometry)._view())
     return View(direction, up, distance)
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, repr=False, eq=False)
 class FieldColors(Result):
     """A field as colours, and what its colour bar says."""
 
@@ -146,17 +157,17 @@ class FieldColors(Result):
 
 def color_by_field(geometry: GeometryLike, field: str) -> FieldColors:
     """Colours by an attribute, or by "rgb", "normal", "x", "y", "z". Raises InvalidInput that lists the fields."""
-    return FieldColors(**_core.color_by_field(as_geometry(geometry)._view(), field))
+    return FieldColors(**_core.color_by_field(as_geometry(geometry)._view(), as_text(field, "field")))
 
 
 def color_by_values(values: ArrayLike, name: str = "") -> FieldColors:
     """Colours of (n,) values. The name decides for some: "shape_index" has the range -1 to 1, labels get one each."""
-    return FieldColors(**_core.color_by_values(_numbers(values), name))
+    return FieldColors(**_core.color_by_values(_numbers(values), as_text(name, "name")))
 
 
 def map_color(map: str, t: ArrayLike) -> NDArray[np.float32]:
     """(n, 3) sRGB of (n,) numbers in [0, 1]; clamped outside, grey for NaN. `map`: see `FieldColors`."""
-    return np.asarray(_core.map_color(map, _numbers(t)))
+    return np.asarray(_core.map_color(as_text(map, "map"), _numbers(t)))
 
 
 def distinct_color(labels: ArrayLike) -> NDArray[np.float32]:
@@ -182,16 +193,16 @@ def from_oklab(lab: ArrayLike) -> NDArray[np.float32]:
 
 def srgb_to_linear(value: float) -> float:
     """One channel in [0, 1] from sRGB to linear light."""
-    return float(_core.srgb_to_linear(value))
+    return float(_core.srgb_to_linear(as_real(value, "value")))
 
 
 def linear_to_srgb(value: float) -> float:
     """One channel in [0, 1] from linear light to sRGB."""
-    return float(_core.linear_to_srgb(value))
+    return float(_core.linear_to_srgb(as_real(value, "value")))
 
 
 def _numbers(values: ArrayLike) -> NDArray[np.float64]:
-    array = np.ascontiguousarray(values, dtype=np.float64)
+    array = as_floats(values, "values")
     if array.ndim != 1:
         raise InvalidInput(f"values: shape {array.shape}, expected (n,)")
     return array

@@ -41,7 +41,7 @@ def as_callable(progress: Progress) -> Iterator[Optional[Callable[[float, str], 
     if isinstance(progress, type) and hasattr(progress, "update"):
         with progress(total=100.0, bar_format="{desc}: {percentage:3.0f}%|{bar}| {elapsed}") as bar:
             yield _Bar(bar)
-    elif hasattr(progress, "update"):
+    elif hasattr(progress, "update") and hasattr(progress, "total"):
         yield _Bar(progress)
     elif callable(progress):
         yield progress

@@ -28,7 +28,10 @@ def _short(value: Any) -> str:
 
 
 class Result:
-    """Base of results: a repr of all fields, arrays by type and shape; on one line where that is short."""
+    """Base of results: a repr of all fields, arrays by type and shape; on one line where that is short.
+
+    Those that hold arrays are equal only to themselves, as geometries are.
+    """
 
     def __repr__(self) -> str:
         names = [f.name for f in dataclasses.fields(self) if f.repr]  # type: ignore[arg-type]
@@ -44,7 +47,7 @@ class Result:
         return html_of(self)
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, repr=False, eq=False)
 class SampleResult(Result):
     """Points that carry the shape."""
 
@@ -79,7 +82,7 @@ class SampleResult(Result):
         return like(self.source, self.geometry.select(np.sort(self.indices)))
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, repr=False, eq=False)
 class FieldsResult(Result):
     """What the surface says, per point. NaN (segment: -1) where a point is not finite."""
 
@@ -145,7 +148,7 @@ class RelativeDistance(Result):
     symmetric: DistanceSummary
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, repr=False, eq=False)
 class SurfaceDistance(Result):
     """How far two surfaces are apart, both ways, as Metro measures it."""
 
@@ -178,7 +181,7 @@ class SurfaceDistance(Result):
         return self.forward.rms
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, repr=False, eq=False)
 class SamplingQuality(Result):
     """How well points stand for the points of a reference. Lengths in input units; features are the tenth of the
     reference with the largest surface variation over 30 neighbours."""
@@ -206,7 +209,7 @@ def surface_distance(found: Dict[str, Any], **more: Any) -> SurfaceDistance:
     return SurfaceDistance(**{**found, **sides, "normal_deviation_deg": deviation, **more})
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, repr=False, eq=False)
 class SimplifyResult(Result):
     """Fewer vertices, the same shape."""
 
@@ -244,7 +247,7 @@ class SimplifyResult(Result):
         return (converted, self.faces) if isinstance(converted, np.ndarray) else converted
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, repr=False, eq=False)
 class RegisterResult(Result):
     """The motion that brings the source onto the target, and what speaks for it. Lengths in input units."""
 
@@ -299,7 +302,7 @@ class RegisterResult(Result):
         return like(self.source, self.geometry.transformed(self.T_target_source))
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, repr=False, eq=False)
 class AlignedScan(Result):
     """Where one scan of many lies."""
 
@@ -313,7 +316,7 @@ class AlignedScan(Result):
     """[input length unit] point to plane, over its overlaps."""
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, repr=False, eq=False)
 class AlignedPair(Result):
     """A pair of scans that was registered."""
 
@@ -333,7 +336,7 @@ class AlignedPair(Result):
     """[input length unit] with the final poses; 0 between different groups."""
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, repr=False, eq=False)
 class AlignResult(Result):
     """Many scans in one frame."""
 

@@ -18,6 +18,7 @@ from typing import Any, Callable, List, Optional, Sequence, Tuple, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from .arguments import as_text, as_whole
 from .errors import InvalidInput, WriteError
 from .geometry import Geometry, as_indices
 from .interop import as_geometry
@@ -136,8 +137,11 @@ def show(
     if dots is not None:
         panels = _for_each(panels, _several(dots, (SampleResult, int, np.integer)), _dotted, "dots")
     if titles is not None:
-        panels = _for_each(panels, _several(titles, (str,)), lambda panel, title: replace(panel, title=title), "titles")
-    return Scene(panels, view, height, interactive)
+        panels = _for_each(panels, _several(titles, (str,)), _titled, "titles")
+    for panel in panels:
+        if not np.isfinite(panel.geometry.positions).all(axis=1).any():
+            raise InvalidInput(f"show: {panel.geometry!r}, expected at least one finite point")
+    return Scene(panels, as_text(view, "view"), as_whole(height, "height", 1), interactive)
 
 
 @singledispatch
@@ -213,6 +217,10 @@ def _for_each(panels: List[Panel], values: List[T], change: Callable[[Panel, T],
     if len(values) != len(panels):
         raise InvalidInput(f"{name}: {len(values)}, expected one, or one for each of {len(panels)} panels")
     return [change(panel, value) for panel, value in zip(panels, values)]
+
+
+def _titled(panel: Panel, title: Any) -> Panel:
+    return replace(panel, title=as_text(title, "titles"))
 
 
 def _colored(panel: Panel, color: Any) -> Panel:

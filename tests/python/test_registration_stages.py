@@ -108,7 +108,7 @@ def test_features_survive(data):
 
 BAD = {
     "expected exactly one target": lambda m, c: stages.simplify_qslim(m),
-    "vertices: -3, expected 1 or more": lambda m, c: stages.simplify_ssim(m, vertices=-3),
+    "vertices: -3, expected at least 1": lambda m, c: stages.simplify_ssim(m, vertices=-3),
     "sample 9999 >= 3000 vertices": lambda m, c: stages.simplify_ssim(m, vertices=100, samples=[9999]),
     "2 denoised positions": lambda m, c: stages.simplify_ssim(m, vertices=100, denoised=[[0, 0, 0]] * 2),
     r"features: shape \(1, 3\)": lambda m, c: stages.simplify_qslim(m, vertices=100, features=[[1, 2, 3]]),

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any, Dict, Optional, Sequence, Union
 
 from .. import _core
+from ..arguments import as_real, as_whole
 from ..describe import option_table
 from ..errors import BudgetExceeded
 from ..geometry import Geometry
@@ -20,15 +21,21 @@ Bytes = Union[int, str]
 
 
 def as_count(name: str, value: Optional[Count]) -> Optional[int]:
-    return _core.parse_count(name, value) if isinstance(value, str) else value
+    if isinstance(value, str):
+        return int(_core.parse_count(name, value))
+    return None if value is None else as_whole(value, name, 1)
 
 
 def as_share(name: str, value: Optional[Share]) -> Optional[float]:
-    return _core.parse_ratio(name, value) if isinstance(value, str) else value
+    if isinstance(value, str):
+        return float(_core.parse_ratio(name, value))
+    return None if value is None else as_real(value, name)
 
 
 def as_length(name: str, value: Optional[Length], geometry: Geometry) -> Optional[float]:
-    return _core.parse_length(name, value, geometry.diagonal) if isinstance(value, str) else value
+    if isinstance(value, str):
+        return float(_core.parse_length(name, value, geometry.diagonal))
+    return None if value is None else as_real(value, name)
 
 
 def as_numbers(function: str, options: Dict[str, Any], geometry: Geometry) -> Dict[str, Any]:
@@ -49,7 +56,8 @@ def check_memory(function: str, inputs: Sequence[Geometry], max_memory: Optional
     """Raises BudgetExceeded when the job's estimate is larger than what is allowed."""
     if max_memory is None:
         return
-    limit = _core.parse_bytes("max_memory", max_memory) if isinstance(max_memory, str) else max_memory
+    name = "max_memory"
+    limit = _core.parse_bytes(name, max_memory) if isinstance(max_memory, str) else as_whole(max_memory, name)
     needed = sum(len(geometry) for geometry in inputs) * _core.bytes_per_point[function]
     if needed > limit:
         raise BudgetExceeded(f"the job needs about {needed >> 20} MiB, more than max_memory {max_memory} allows")

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .. import _core
+from ..arguments import as_text
 from ..describe import described
 from ..errors import TargetUnreachable
 from ..interop import GeometryLike, as_geometry
@@ -57,16 +58,17 @@ def sample(
     check_memory("sample", [geometry], max_memory)
     size = as_count("count", count), as_share("ratio", ratio), as_length("spacing", spacing, geometry)
     given = as_numbers("sample", {**options}, geometry)
+    preset_name = as_text(preset, "preset")
     view = geometry._view(attributes=False)
     is_partial = False
     with as_callable(progress) as report:
         try:
-            found = _core.sample(view, *size, preset, given, threads, report)
+            found = _core.sample(view, *size, preset_name, given, threads, report)
         except TargetUnreachable as error:
             if not allow_partial or error.reachable == 0:
                 raise
             is_partial = True
-            found = _core.sample(view, error.reachable, None, None, preset, given, threads, report)
+            found = _core.sample(view, error.reachable, None, None, preset_name, given, threads, report)
     return SampleResult(**found, is_partial=is_partial, source=points_or_mesh, geometry=geometry)
 
 
@@ -91,7 +93,7 @@ def fields(
     geometry = as_geometry(points_or_mesh, faces)
     check_memory("fields", [geometry], max_memory)
     with as_callable(progress) as report:
-        found = _core.fields(geometry._view(attributes=False), preset, {**options}, threads, report)
+        found = _core.fields(geometry._view(attributes=False), as_text(preset, "preset"), {**options}, threads, report)
     columns = found.pop("attributes")
     whole = replace(geometry, attributes={**geometry.attributes, **columns})
     arrays = {name: columns.get(name, np.zeros(0, np.float32)) for name in FIELD_NAMES}

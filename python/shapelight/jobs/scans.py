@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Optional, Sequence
 from numpy.typing import ArrayLike
 
 from .. import _core
+from ..arguments import as_real
 from ..describe import described
 from ..errors import InvalidInput, PostconditionFailed
 from ..geometry import Geometry, as_transform
@@ -43,6 +44,7 @@ def register(
     Raises FormatError (too few points), InvalidInput, PostconditionFailed: the confidence is below `min_confidence`;
     its attribute `result` holds the RegisterResult.
     """
+    least = as_real(min_confidence, "min_confidence")
     moving, fixed = as_geometry(source), as_geometry(target)
     check_memory("register", [moving, fixed], max_memory)
     start = None if init is None else as_transform(init, "init")
@@ -51,9 +53,9 @@ def register(
     with as_callable(progress) as report:
         found = _core.register_scans(*views, start, given, threads, report)
     result = RegisterResult(**found, source=source, geometry=moving, target=fixed)
-    if not result.confidence >= min_confidence:
+    if not result.confidence >= least:
         raise _withheld(
-            f"confidence {result.confidence:.2f} is below min_confidence {min_confidence:g}: {result.doubt}", result
+            f"confidence {result.confidence:.2f} is below min_confidence {least:g}: {result.doubt}", result
         )
     return result
 
@@ -78,6 +80,7 @@ def align(
     Raises InvalidInput (names the scan), PostconditionFailed: not all scans could be placed; its attribute `result`
     holds the AlignResult.
     """
+    merged = bool(merged)
     geometries = [as_geometry(scan) for scan in scans]
     if len(geometries) < 2:
         raise InvalidInput(f"scans: {len(geometries)}, expected two or more")

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Literal, Optional, Union
 
-import numpy as np
 from numpy.typing import ArrayLike
 
 from .. import _core
+from ..arguments import as_text
 from ..describe import described
 from ..errors import InvalidInput, TargetUnreachable
 from ..geometry import Geometry
@@ -56,13 +56,15 @@ def simplify(
     BudgetExceeded.
     """
     for name, value in (("vertices", vertices), ("faces", faces)):
-        if isinstance(value, (np.ndarray, list)):
+        if isinstance(value, (list, tuple)) or getattr(value, "ndim", 0) > 0:
             raise InvalidInput(f"{name}: an array; pass arrays by position: simplify(vertices, faces, ratio=0.1)")
     geometry = as_geometry(mesh_or_vertices, triangles)
     check_memory("simplify", [geometry], max_memory)
     num_vertices, num_faces = as_count("vertices", vertices), as_count("faces", faces)
     size = num_vertices, num_faces, as_share("ratio", ratio), as_length("max_error", max_error, geometry)
     given = as_numbers("simplify", {**options}, geometry)
+    if preset is not None:
+        as_text(preset, "preset")
     view = geometry._view()
     is_partial = False
     with as_callable(progress) as report:
@@ -109,7 +111,7 @@ def metrics(
     first, second = as_geometry(reference), as_geometry(test)
     with as_callable(progress) as report:
         views = first._view(attributes=False), second._view(attributes=False)
-        found = _core.metrics(*views, distances, {**options}, threads, report)
+        found = _core.metrics(*views, bool(distances), {**options}, threads, report)
     if found["surfaces"] is not None:
         return surface_distance(found["surfaces"], distances=found["distances"])
     return SamplingQuality(**found["points"], distances=found["distances"])

@@ -2,22 +2,22 @@
 
 from __future__ import annotations
 
-import operator
 from typing import Optional
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..arguments import as_array, as_floats, as_whole
 from ..errors import InvalidInput
 from ..geometry import as_indices
 
 
 def as_field(values: ArrayLike, name: str) -> NDArray[np.float64]:
     """(n,) float64, C-contiguous: the array itself when it is that already. Raises InvalidInput."""
-    array = np.asarray(values)
+    array = as_array(values, name)
     if array.ndim != 1 or array.dtype.kind not in "fiub":
         raise InvalidInput(f"{name}: shape {array.shape} of {array.dtype}, expected (n,) numbers")
-    return np.ascontiguousarray(array, dtype=np.float64)
+    return as_floats(array, name)
 
 
 def as_optional_field(values: Optional[ArrayLike], name: str) -> Optional[NDArray[np.float64]]:
@@ -30,10 +30,4 @@ def as_labels(values: ArrayLike, name: str) -> NDArray[np.uint32]:
 
 
 def as_count(value: int, name: str, least: int = 1) -> int:
-    try:
-        count = operator.index(value)
-    except TypeError:
-        raise InvalidInput(f"{name}: {value!r}, expected a whole number") from None
-    if count < least:
-        raise InvalidInput(f"{name}: {count}, expected at least {least}")
-    return count
+    return as_whole(value, name, least)

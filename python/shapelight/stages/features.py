@@ -30,7 +30,7 @@ __all__ = [
 ]
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, repr=False, eq=False)
 class Curvatures(Result):
     """Principal curvatures, positive where the surface is convex seen from the side its normals point to."""
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 __all__ = ["SurfaceFields", "compute_fields"]
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, repr=False, eq=False)
 class SurfaceFields(Result):
     """What the stages found, per vertex of the graph; arrays of stages that were switched off are empty."""
 

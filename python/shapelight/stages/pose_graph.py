@@ -36,7 +36,7 @@ __all__ = [
 ]
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, repr=False, eq=False)
 class PoseGraphEdge(Result):
     """What one pairwise registration says about two scans."""
 
@@ -78,7 +78,7 @@ class PoseGraphEdgeResult(Result):
     """Of the final poses; NaN between scans of different groups."""
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, repr=False, eq=False)
 class PoseGraphResult(Result):
     """Poses of all scans."""
 
@@ -158,7 +158,7 @@ def measure_fit(
     return PairFit(**_core.measure_fit(_clouds(target), _clouds(source), pose, {**options}))
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, repr=False, eq=False)
 class JointRefinementResult(Result):
     """Poses of all scans after they moved at once."""
 

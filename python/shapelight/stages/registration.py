@@ -13,9 +13,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .. import _core
+from ..arguments import as_floats, as_real
 from ..describe import described
 from ..errors import InvalidInput
-from ..geometry import Geometry, as_indices, as_points, as_transform
+from ..geometry import Geometry, as_indices, as_points, as_transform, as_vector
 from ..interop import GeometryLike, as_geometry
 from ..progress import Progress, as_callable
 from ..results import RegisterResult, Result
@@ -72,7 +73,7 @@ class RegistrationCloud:
         Raises InvalidInput (a position that is not finite, another number of normals).
         """
         directions = None if normals is None else as_points(normals, "normals")
-        sensor = None if viewpoint is None else as_points(np.reshape(viewpoint, (1, -1)), "viewpoint")[0].tolist()
+        sensor = None if viewpoint is None else as_vector(viewpoint, "viewpoint").tolist()
         with as_callable(progress) as report:
             points = as_points(positions, "positions")
             self._cloud: Any = _core.RegistrationCloud(points, directions, sensor, threads, report)
@@ -117,7 +118,13 @@ class RegistrationCloud:
         return f"RegistrationCloud({len(self)} points, {normals} normals, spacing={self.spacing:.6g})"
 
 
-@dataclass(frozen=True, repr=False)
+def _cloud_of(cloud: Any, name: str) -> Any:
+    if not isinstance(cloud, RegistrationCloud):
+        raise InvalidInput(f"{name}: {type(cloud).__name__}, expected a RegistrationCloud")
+    return cloud._cloud
+
+
+@dataclass(frozen=True, repr=False, eq=False)
 class RegistrationResult(Result):
     """How an iteration ended."""
 
@@ -191,12 +198,12 @@ def _iterate(
     method: Any, source: RegistrationCloud, target: RegistrationCloud, start: ArrayLike, options: Any, threads: int,
     progress: Progress,
 ) -> RegistrationResult:
-    pose = as_transform(start, "T_target_source")
+    pose, clouds = as_transform(start, "T_target_source"), (_cloud_of(source, "source"), _cloud_of(target, "target"))
     with as_callable(progress) as report:
-        return RegistrationResult(**method(source._cloud, target._cloud, pose, options, threads, report))
+        return RegistrationResult(**method(*clouds, pose, options, threads, report))
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, repr=False, eq=False)
 class DescribedPoints(Result):
     """A scan at even density, every point with a description of the surface around it."""
 
@@ -212,7 +219,7 @@ class DescribedPoints(Result):
     """(k,) of the n: those worth recognising, best first."""
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, repr=False, eq=False)
 class PoseHypothesis(Result):
     """A guess of where the source lies."""
 
@@ -227,7 +234,7 @@ def coarse_spacing(cloud: RegistrationCloud) -> float:
 
     Scans that are to be aligned with each other share one: the largest of theirs.
     """
-    return float(_core.coarse_spacing(cloud._cloud))
+    return float(_core.coarse_spacing(_cloud_of(cloud, "cloud")))
 
 
 def describe_points(
@@ -248,7 +255,8 @@ def describe_points(
     """
     chosen = as_indices(keypoints, "keypoints", (-1,))
     with as_callable(progress) as report:
-        return DescribedPoints(**_core.describe_points(cloud._cloud, chosen, float(spacing), threads, report))
+        inputs = _cloud_of(cloud, "cloud"), chosen, as_real(spacing, "spacing")
+        return DescribedPoints(**_core.describe_points(*inputs, threads, report))
 
 
 @described("align_coarsely")
@@ -284,7 +292,7 @@ def _described(points: DescribedPoints, name: str) -> Any:
     }
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, repr=False, eq=False)
 class PoseAssessment(Result):
     """What speaks for a pose and against it, measured on the full scans."""
 
@@ -338,13 +346,16 @@ def assess_pose(
 
     Raises InvalidInput.
     """
-    pose, others = as_transform(T_target_source, "T_target_source"), np.array(rivals, dtype=np.float64, ndmin=1)
+    pose, others = as_transform(T_target_source, "T_target_source"), np.atleast_1d(as_floats(rivals, "rivals"))
+    if others.ndim != 1:
+        raise InvalidInput(f"rivals: shape {others.shape}, expected (k,)")
+    clouds = _cloud_of(source, "source"), _cloud_of(target, "target")
     with as_callable(progress) as report:
-        found = _core.assess_pose(source._cloud, target._cloud, pose, others, threads, report)
+        found = _core.assess_pose(*clouds, pose, others, threads, report)
     return PoseAssessment(**found)
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, repr=False, eq=False)
 class PreparedScan(Result):
     """A scan made ready to be registered with others. Coordinates of its clouds are relative to `origin`."""
 
@@ -384,6 +395,12 @@ def prepare_scan(
     return PreparedScan(origin, full, samples, keypoints, scan, geometry, ready)
 
 
+def _scan_of(scan: Any, name: str) -> Any:
+    if not isinstance(scan, PreparedScan):
+        raise InvalidInput(f"{name}: {type(scan).__name__}, expected what prepare_scan returns")
+    return scan._scan
+
+
 @described("register")
 def register_prepared(
     source: PreparedScan,
@@ -400,5 +417,6 @@ def register_prepared(
     """
     start = None if init is None else as_transform(init, "init")
     with as_callable(progress) as report:
-        found = _core.register_prepared(source._scan, target._scan, start, {**options}, threads, report)
+        scans = _scan_of(source, "source"), _scan_of(target, "target")
+        found = _core.register_prepared(*scans, start, {**options}, threads, report)
     return RegisterResult(**found, source=source.source, geometry=source.geometry, target=target.geometry)

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 __all__ = ["RetinexResult", "decompose_retinex"]
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, repr=False, eq=False)
 class RetinexResult(Result):
     """The two parts of a field s: with the intensity I = (s + 1) / 2, reflectance = log(I + 1) - log(L + 1)."""
 

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 __all__ = ["SegmentationResult", "segment_field"]
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, repr=False, eq=False)
 class SegmentationResult(Result):
     """Connected segments of a surface."""
 

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 __all__ = ["SimplifiedMesh", "simplify_qslim", "simplify_ssim", "simplify_ssim_paper"]
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, repr=False, eq=False)
 class SimplifiedMesh(Result):
     """Fewer vertices; every one is used by a face."""
 
@@ -129,11 +129,7 @@ def simplify_ssim_paper(
 
 
 def _target(vertices: Optional[Count], faces: Optional[Count]) -> Tuple[int, int]:
-    counts = {"vertices": as_count("vertices", vertices), "faces": as_count("faces", faces)}
-    for name, count in counts.items():
-        if count is not None and count < 1:
-            raise InvalidInput(f"{name}: {count}, expected 1 or more")
-    return counts["vertices"] or 0, counts["faces"] or 0
+    return as_count("vertices", vertices) or 0, as_count("faces", faces) or 0
 
 
 def _edges(features: Optional[ArrayLike]) -> NDArray[Any]:

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .. import _core
+from ..arguments import as_real
 from ..geometry import NO_INDEX, as_points
 from ..interop import GeometryLike, as_geometry
 from ..progress import Progress, as_callable
@@ -92,7 +93,8 @@ class KdTree:
     ) -> NearestPoints:
         """The k nearest points of each of the (n, 3) queries, none farther than `radius` [input length unit]."""
         with as_callable(progress) as report:
-            found = self._tree.nearest(as_points(queries, "queries"), as_count(k, "k"), radius, threads, report)
+            limits = as_count(k, "k"), as_real(radius, "radius")
+            found = self._tree.nearest(as_points(queries, "queries"), *limits, threads, report)
         return NearestPoints(*(np.squeeze(column, axis=1) if k == 1 else column for column in found))
 
     def within(
@@ -100,7 +102,8 @@ class KdTree:
     ) -> PointsWithin:
         """All points with distance <= radius [input length unit] of each of the (n, 3) queries."""
         with as_callable(progress) as report:
-            return PointsWithin(*self._tree.within(as_points(queries, "queries"), radius, threads, report))
+            places, limit = as_points(queries, "queries"), as_real(radius, "radius")
+            return PointsWithin(*self._tree.within(places, limit, threads, report))
 
     def all_nearest(self, k: int, *, threads: int = 0, progress: Progress = None) -> NDArray[np.uint32]:
         """(len(tree), k): of every point the k nearest others, nearest first; NO_INDEX where there are fewer. Several

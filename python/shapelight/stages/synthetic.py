@@ -34,7 +34,7 @@ __all__ = [
 ]
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, repr=False, eq=False)
 class BoundingSphere(Result):
     """A sphere about an object, for cameras to look at."""
 
@@ -44,7 +44,7 @@ class BoundingSphere(Result):
     """[input length unit]."""
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, repr=False, eq=False)
 class VirtualCamera(Result):
     """A pinhole camera. In its own frame it looks along z, x points to the right and y down, as in depth images."""
 
@@ -54,7 +54,7 @@ class VirtualCamera(Result):
     """[rad] across the smaller side of the image."""
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, repr=False, eq=False)
 class VirtualScan(Result):
     """A range image in a frame of its own, and where that frame is: the truth that registration should find."""
 
@@ -64,7 +64,7 @@ class VirtualScan(Result):
     """(4, 4) p_mesh = R p_scan + t."""
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, repr=False, eq=False)
 class ScanPair(Result):
     """Two scans of a surface, and how they truly lie."""
 
