@@ -72,6 +72,8 @@ def render(
     inputs = [(_name(g), as_geometry(g)._view()) for g in _several(geometries)]
     marks = [(_name(d), as_geometry(d).positions) for d in ([] if dots is None else _several(dots))]
     colors = [color or "none"] if color is None or isinstance(color, str) else list(color)
+    if not all(isinstance(name, str) for name in colors):
+        raise InvalidInput("color: expected the name of a field, or a list of names (sl.show takes values, too)")
     style = {
         "colors": colors,
         "titles": [titles] if isinstance(titles, str) else list(titles or ()),
