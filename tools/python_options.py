@@ -26,18 +26,42 @@ def type_of(row):
     return row["type"]
 
 
+def class_name(function):
+    return "".join(word.capitalize() for word in function.split("_")) + "Options"
+
+
+def parents_of(function, tables):
+    """Functions whose options are among those of this one, the largest first, without overlaps."""
+    mine = {repr(row) for row in tables[function]}
+    parents, taken = [], set()
+    for other in sorted(tables, key=lambda name: (-len(tables[name]), name)):
+        rows = {repr(row) for row in tables[other]}
+        if rows and rows < mine and not rows & taken:
+            parents.append(other)
+            taken |= rows
+    return parents, taken
+
+
+def class_text(function, tables):
+    parents, inherited = parents_of(function, tables)
+    bases = [class_name(parent) for parent in parents] or ["TypedDict"]
+    head = f"class {class_name(function)}({', '.join(bases)}, total=False):"
+    if len(head) > 120:
+        head = f"class {class_name(function)}(\n    " + ",\n    ".join([*bases, "total=False"]) + ",\n):"
+    lines = [f"\n\n{head}", f'    """Options of {function}()."""']
+    rows = [row for row in tables[function] if repr(row) not in inherited]
+    for row in rows:
+        unit = f" [{row['unit']}]" if row["unit"] not in ("", "1") else ""
+        lines += [f"    {row['name']}: {type_of(row)}", f'    """{row["meaning"]}{unit} ({row["default"]})"""']
+    if rows:
+        lines.insert(2, "")
+    return "\n".join(lines) + "\n"
+
+
 def text():
-    classes = [HEADER]
-    for function, rows in sorted(_core.option_tables.items()):
-        name = "".join(word.capitalize() for word in function.split("_")) + "Options"
-        lines = [f"\n\nclass {name}(TypedDict, total=False):", f'    """Options of {function}()."""', ""]
-        if not rows:
-            lines.pop()
-        for row in rows:
-            unit = f" [{row['unit']}]" if row["unit"] not in ("", "1") else ""
-            lines += [f"    {row['name']}: {type_of(row)}", f'    """{row["meaning"]}{unit} ({row["default"]})"""']
-        classes.append("\n".join(lines) + "\n")
-    return "".join(classes)
+    tables = dict(_core.option_tables)
+    by_size = sorted(tables, key=lambda name: (len(tables[name]), name))  # parents first
+    return HEADER + "".join(class_text(function, tables) for function in by_size)
 
 
 def main():

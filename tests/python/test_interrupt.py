@@ -29,7 +29,10 @@ MANY_POINTS = """
 def start(command):
     environment = {**os.environ, "PYTHONPATH": os.path.dirname(os.path.dirname(sl.__file__))}
     pipe = subprocess.PIPE
-    return subprocess.Popen([sys.executable, *map(str, command)], stdout=pipe, stderr=pipe, text=True, env=environment)
+    return subprocess.Popen(
+        [sys.executable, *map(str, command)], stdout=pipe, stderr=pipe, text=True, env=environment,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),  # shells start background jobs that ignore it
+    )
 
 
 def run_program(program, *arguments, interrupt_after=None):
