@@ -5,8 +5,6 @@
 
 import sys
 
-import numpy as np
-
 import shapelight as sl
 
 
@@ -20,7 +18,7 @@ def main() -> None:
         sys.exit(f"the scans could not be registered: {error}")
     sl.write_transform(transform, result.T_target_source)
     aligned: sl.Geometry = result.output
-    sl.write(merged, np.concatenate([fixed.positions, aligned.positions]))
+    sl.write(merged, sl.concatenate([fixed, aligned]))
 
     print(f"confidence {result.confidence:.2f}, overlap {result.overlap:.0%}, mean error {result.mean_error:.2g}")
 

@@ -67,7 +67,8 @@ def render(
     """Draws geometries side by side, in every colour and under every set of dots, as (height, width, 3) uint8.
 
     geometries  whatever `as_geometry` takes, or a list of such
-    color       field to colour by: an attribute, "rgb", "normal", "x", "y", "z" or "none"; or a list, a panel each
+    color       field to colour by: an attribute, "rgb", "normal", "x", "y", "z" or "none"; or a list, a panel each;
+                for values see `show`
     dots        points to draw on top, such as a sample; or a list of such, a panel each
     titles      captions, one per panel; else what the files and colours are called
     view        "auto", "front", "back", "left", "right", "top", "bottom", "iso", or "x,y,z" of the eye
@@ -80,8 +81,8 @@ def render(
     inputs = [(_name(g), as_geometry(g)._view()) for g in _several(geometries)]
     marks = [(_name(d), as_geometry(d).positions) for d in ([] if dots is None else _several(dots))]
     style = {
-        "colors": _texts(color or "none", "color"),
-        "titles": _texts(titles or (), "titles"),
+        "colors": _texts("none" if color is None else color, "color"),
+        "titles": _texts(() if titles is None else titles, "titles"),
         "view": as_text(view, "view"),
         "point_size": as_real(point_size, "point_size"),
         "dot_size": as_real(dot_size, "dot_size"),

@@ -44,6 +44,8 @@ def test_a_list_of_points_is_one_cloud(cube):
 def test_errors_say_what_there_is(cube):
     with pytest.raises(sl.InvalidInput, match="expected one of: x, y, z, label"):
         sl.render(cube, color="height", **SMALL)
+    with pytest.raises(sl.InvalidInput, match="color: expected the name of a field"):
+        sl.render(cube, color=np.zeros(len(cube)), **SMALL)
     with pytest.raises(sl.InvalidInput, match="view"):
         sl.render(cube, view="below", **SMALL)
     with pytest.raises(sl.InvalidInput, match="expected 0 or more"):
