@@ -64,8 +64,8 @@ def option_term(option):
 
 def exit_status():
     for page in sorted(DOCS.glob("*.md")):
-        if table := re.search(r"^\| code \| meaning \|\n\|[ \-|]+\n((?:\|.*\n)+)", page.read_text(), re.MULTILINE):
-            rows = [[cell.strip() for cell in row.strip("|").split("|")] for row in table[1].splitlines()]
+        if table := re.search(r"^\| code \| meaning \|.*\n\|[ \-|]+\n((?:\|.*\n)+)", page.read_text(), re.MULTILINE):
+            rows = [[cell.strip() for cell in row.strip("|").split("|")][:2] for row in table[1].splitlines()]
             return ".SH EXIT STATUS\n" + "".join(term(rf"\fB{code}\fR", meaning) for code, meaning in rows)
     raise ValueError(f"{DOCS}: expected a page with the table | code | meaning |")
 

@@ -248,44 +248,61 @@ class SimplifyResult(Result):
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class RegisterResult(Result):
-    """The motion that brings the source onto the target, and what speaks for it. Lengths in input units."""
+class PoseAssessment(Result):
+    """What speaks for a pose and against it, measured on the full scans."""
 
-    T_target_source: NDArray[np.float64]
-    """(4, 4) p_target = R p_source + t."""
     confidence: float
     """[1] calibrated share of right poses among poses that look like this one."""
     doubt: str
     """What speaks most against it; may be empty."""
     overlap: float
-    """[1] share of a scan's points that lie on the other; of the scan that has more."""
+    """[1] share of a scan's points within the gate of the other; of the scan that has more."""
     mean_error: float
-    """Over reciprocal correspondences: the paper's e_mu."""
+    """[input length unit] over reciprocal correspondences: the paper's e_mu."""
     std_error: float
-    """Over reciprocal correspondences: the paper's e_delta."""
+    """[input length unit] the paper's e_delta."""
     reciprocal_share: float
+    """[1] of the source points that have a reciprocal correspondence."""
     residual: float
-    """Point to plane over the overlap: 1.4826 times the median."""
+    """[input length unit] point to plane over the overlap: 1.4826 times the median."""
     gate: float
+    """[input length unit] how close surfaces must come to count as one."""
     contrast: float
+    """[1] how much more often surfaces lie within the gate than chance would have them."""
     normal_agreement: float
+    """[1] share of the pairs whose normals agree."""
     in_free_space: float
+    """[1] share of the points that a sensor looked through, of those in its sight; 0: unknown."""
     conditioning: float
+    """[1] smallest over largest eigenvalue of the scaled information; 0: undetermined."""
     weakest_direction: str
     """The motion that the surfaces say least about."""
     weakest_uncertainty: float
+    """[input length unit] standard deviation of the points along it."""
     covariance: NDArray[np.float64] = field(repr=False)
     """(6, 6) of (turn [rad] about, slide [length] of) the target's origin."""
     rival_weight: float
+    """[1] of the rivals beside this pose."""
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class RegisterResult(PoseAssessment):
+    """The motion that brings the source onto the target, and what speaks for it."""
+
+    T_target_source: NDArray[np.float64]
+    """(4, 4) p_target = R p_source + t."""
     fit: float
+    """[1] how well the samples of the scan that fits better lie on the other one."""
     rival_fit: float
+    """[1] the same of the best other pose that was tried."""
     converged: bool
     stop: str
     """Why the iteration ended."""
     iterations: int
     inlier_ratio: float
+    """[1] share of the source's samples that had a say in the last step."""
     rms: float
-    """Point to point, of the last iteration."""
+    """[input length unit] point to point, of the last iteration."""
     source_samples: int
     target_samples: int
     hypotheses: int

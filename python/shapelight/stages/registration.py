@@ -19,7 +19,7 @@ from ..errors import InvalidInput
 from ..geometry import Geometry, as_indices, as_points, as_transform, as_vector
 from ..interop import GeometryLike, as_geometry
 from ..progress import Progress, as_callable
-from ..results import RegisterResult, Result
+from ..results import PoseAssessment, RegisterResult, Result
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -290,44 +290,6 @@ def _described(points: DescribedPoints, name: str) -> Any:
         "descriptor": descriptor,
         "keypoints": as_indices(points.keypoints, f"{name}.keypoints", (-1,)),
     }
-
-
-@dataclass(frozen=True, repr=False, eq=False)
-class PoseAssessment(Result):
-    """What speaks for a pose and against it, measured on the full scans."""
-
-    confidence: float
-    """[1] calibrated share of right poses among poses that look like this one."""
-    doubt: str
-    """What speaks most against it; may be empty."""
-    overlap: float
-    """[1] share of a scan's points within the gate of the other; of the scan that has more."""
-    mean_error: float
-    """[input length unit] over reciprocal correspondences: the paper's e_mu."""
-    std_error: float
-    """[input length unit] the paper's e_delta."""
-    reciprocal_share: float
-    """[1] of the source points that have a reciprocal correspondence."""
-    residual: float
-    """[input length unit] point to plane over the overlap: 1.4826 times the median."""
-    gate: float
-    """[input length unit] how close surfaces must come to count as one."""
-    contrast: float
-    """[1] how much more often surfaces lie within the gate than chance would have them."""
-    normal_agreement: float
-    """[1] share of the pairs whose normals agree."""
-    in_free_space: float
-    """[1] share of the points that a sensor looked through, of those in its sight; 0: unknown."""
-    conditioning: float
-    """[1] smallest over largest eigenvalue of the scaled information; 0: undetermined."""
-    weakest_direction: str
-    """The motion that the surfaces say least about."""
-    weakest_uncertainty: float
-    """[input length unit] standard deviation of the points along it."""
-    covariance: NDArray[np.float64] = field(repr=False)
-    """(6, 6) of (turn [rad] about, slide [length] of) the target's origin."""
-    rival_weight: float
-    """[1] of the rivals beside this pose."""
 
 
 def assess_pose(
