@@ -49,7 +49,7 @@ def iter_chunks(path: Path, size: int = 1_000_000) -> Iterator[Geometry]:
         kept = [chunk.select(sl.sample(chunk, ratio=0.1).indices) for chunk in sl.iter_chunks("large.laz")]
         sl.write("thin.laz", sl.concatenate(kept))
 
-    Raises ImportError when the extra is missing (pip install shapelight[las]), InvalidInput (another format, size),
+    Raises ImportError when the extra is missing (pip install 'shapelight[las]'), InvalidInput (another format, size),
     ReadError, FormatError.
     """
     name, size = as_file_name(path), as_whole(size, "size", 1)
@@ -58,7 +58,7 @@ def iter_chunks(path: Path, size: int = 1_000_000) -> Iterator[Geometry]:
     try:
         from .extras import las
     except ImportError as error:
-        raise ImportError("reading in chunks needs laspy and lazrs: pip install shapelight[las]") from error
+        raise ImportError("reading in chunks needs laspy and lazrs: pip install 'shapelight[las]'") from error
     return (chunk for chunk, _ in las.chunks(name, size))
 
 

@@ -122,7 +122,7 @@ def _made_by(library: str, geometry: GeometryLike, **options: bool) -> Any:
 
 def _need(library: str) -> None:
     if importlib.util.find_spec(library) is None:
-        extra = "shapelight[las]" if library == "laspy" else library
+        extra = "'shapelight[las]'" if library == "laspy" else library
         raise ImportError(f"to_{library}: {library} is not installed: pip install {extra}")
 
 

@@ -17,7 +17,7 @@ from .interop import GeometryLike, like, like_with
 def _short(value: Any) -> str:
     if isinstance(value, np.ndarray):
         if value.size <= 3 or value.shape == (4, 4):
-            return np.array2string(value, precision=6, separator=", ", prefix=" " * 16)
+            return np.array2string(value, precision=6, separator=", ", prefix=" " * 16, max_line_width=120)
         return f"{value.dtype} {value.shape}"
     if isinstance(value, float):
         return f"{value:.6g}"
@@ -35,6 +35,7 @@ class Result:
 
     def __repr__(self) -> str:
         names = [f.name for f in dataclasses.fields(self) if f.repr]  # type: ignore[arg-type]
+        names.sort(key=lambda name: not name.startswith("T_"))  # the pose first, wherever a base class puts it
         shown = [f"{name}={_short(getattr(self, name))}" for name in names]
         line = ", ".join(shown)
         if len(line) <= 80 and "\n" not in line:

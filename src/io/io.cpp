@@ -55,10 +55,10 @@ std::vector<Format>& formats() {
       {"rif", {".rif"}, "RIF range images as text", io::read_rif, {}},
       {"laz",
        {".laz"},
-       "compressed LAS and COPC (.copc.laz), by the Python package: pip install shapelight[las]",
+       "compressed LAS and COPC (.copc.laz), by the Python package: pip install 'shapelight[las]'",
        {},
        {}},
-      {"e57", {".e57"}, "ASTM E57 scans, by the Python package: pip install shapelight[e57]", {}, {}},
+      {"e57", {".e57"}, "ASTM E57 scans, by the Python package: pip install 'shapelight[e57]'", {}, {}},
   };
   return table;
 }

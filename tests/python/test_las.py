@@ -207,14 +207,14 @@ import shapelight as sl
 try:
     sl.read({str(data / "clouds/simple.laz")!r})
 except sl.FormatError as error:
-    assert "pip install shapelight[las]" in str(error), error
+    assert "pip install 'shapelight[las]'" in str(error), error
 else:
     raise SystemExit("no error")
 for call in (lambda: sl.iter_chunks({str(data / "clouds/simple.laz")!r}), lambda: sl.to_laspy([[0, 0, 0]])):
     try:
         call()
     except ImportError as error:
-        assert "pip install shapelight[las]" in str(error), error
+        assert "pip install 'shapelight[las]'" in str(error), error
     else:
         raise SystemExit("no error")
 """
