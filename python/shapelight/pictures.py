@@ -45,6 +45,14 @@ def _texts(given: Union[str, Sequence[str]], name: str) -> List[str]:
     return [as_text(text, name) for text in several]
 
 
+def _field_names(color: Union[str, Sequence[str]]) -> List[str]:
+    """One or several; values are for `show`."""
+    names = [color] if isinstance(color, str) else list(color) if isinstance(color, Iterable) else [color]
+    if not all(isinstance(name, str) for name in names):
+        raise InvalidInput("color: expected the name of a field, or a list of names (sl.show takes values, too)")
+    return names
+
+
 def _name(thing: Any) -> str:
     return Path(thing).stem if isinstance(thing, (str, os.PathLike)) else ""
 
@@ -81,7 +89,7 @@ def render(
     inputs = [(_name(g), as_geometry(g)._view()) for g in _several(geometries)]
     marks = [(_name(d), as_geometry(d).positions) for d in ([] if dots is None else _several(dots))]
     style = {
-        "colors": _texts("none" if color is None else color, "color"),
+        "colors": _field_names("none" if color is None else color),
         "titles": _texts(() if titles is None else titles, "titles"),
         "view": as_text(view, "view"),
         "point_size": as_real(point_size, "point_size"),
