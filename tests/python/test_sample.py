@@ -20,8 +20,9 @@ def test_count_is_exact_and_indices_are_unique(points):
 
 
 def test_contiguous_doubles_are_read_in_place(points):
-    view = sl.as_geometry(points)._view()
-    assert view.positions_address == points.ctypes.data
+    geometry = sl.as_geometry(points)
+    for view in (geometry._view(), geometry._view(attributes=False)):
+        assert view.positions_address == points.ctypes.data
 
 
 def test_strided_and_read_only_arrays_give_the_same(points):
