@@ -52,7 +52,7 @@ def end(process, interrupt):
 
 
 def test_interrupt_raises_keyboard_interrupt():
-    _, out, err = run_program(  # left alone, the call takes many times PATIENCE
+    _, out, err = run_program(  # left alone, the call outlasts PATIENCE
         """
         print("ready", flush=True)
         try:
